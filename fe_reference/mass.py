@@ -47,12 +47,6 @@ class RigidBodies:
     centre: Array
     moment_of_inertia: Array
 
-    def rows(self, structure: Structure) -> tuple[Array, Array]:
-        """Return mass [kg] and moment of inertia [kg m^2] of the rows (rows,): infinite beside bodies."""
-        found = np.full((2, len(structure.numbers)), np.inf)
-        found[:, structure.nodes : -1] = self.mass, self.moment_of_inertia
-        return found[0], found[1]
-
     def block(self, structure: Structure, body: int, turn: float) -> Array:
         """Return the mass matrix (3, 3) of a body in its coordinates where it is turned [rad]."""
         arm = turned(turn, *(self.centre[body] - structure.points[body]))
@@ -149,17 +143,20 @@ def couplings(structure: Structure, bodies: RigidBodies, held: Flags) -> Array:
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
-def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:
-    """Return coordinates y (size,) [m, rad] of one structure in another with other points of the bodies.
+def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tuple[Array, Array]:
+    """Return coordinates and velocities of one structure in another with other points of the bodies.
 
-    With velocities v (size,) [m/s, rad/s], return the velocities instead.
+    Args:
+        before, after: reduced about the former points of the bodies and about the others.
+        y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
     """
-    moved = y.copy() if v is None else v.copy()
+    y, v = y.copy(), v.copy()
     for k in range(0 if after is before else len(before.points)):
         at, offset = before.body_slice(k), after.points[k] - before.points[k]
-        arm, way = turned(y[at][2], *offset), swept(y[at][2], *offset)
-        moved[at.start : at.start + 2] += way if v is None else (-v[at][2] * arm[1], v[at][2] * arm[0])
-    return moved
+        (x_arm, y_arm), way = turned(y[at][2], *offset), swept(y[at][2], *offset)
+        y[at][:2] += way
+        v[at][:2] += -v[at][2] * y_arm, v[at][2] * x_arm
+    return y, v
 
 
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:

@@ -196,10 +196,10 @@ class Samples:
                 f" between {self.time[-1]:.6g} s and {at.time:.6g} s"
             )
             return False
-        places = (scheme.structure, at.y, structure_of(scheme.structure.model))
+        y, v = carried_over(scheme.structure, at.y, at.v, structure_of(scheme.structure.model))
         self.time.append(at.time)
-        self.y.append(carried_over(*places))
-        self.v.append(carried_over(*places, at.v))
+        self.y.append(y)
+        self.v.append(v)
         self.energy.append(energy)
         return True
 
@@ -232,7 +232,7 @@ def course(
     samples = Samples(home=scheme)
     for span in spans:
         before, scheme = scheme.structure, scheme_of(span.led)
-        y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
+        y, v = carried_over(before, y, v, scheme.structure)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
         gained = scheme.kinetic(y, caught) - scheme.kinetic(y, v)
         # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
