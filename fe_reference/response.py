@@ -7,6 +7,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -252,18 +253,37 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 
+def _limits(control: Control, last: State) -> list[float]:
+    """Return what is left to a limit of the parameter after a state, by each two states behind each other.
+
+    Next to a limit the parameter is short of it by the square of the way to it. So the square of the rate
+    there grows as one over the rest.
+    """
+    states = ((last.parameter, last.y, last.rate), *last.behind)
+    free = control.structure.measure * ~control.is_held
+    fast = [(parameter, float(np.sum((free * rate) ** 2))) for parameter, _, rate in states]
+    return [
+        p - last.parameter + (p - before) * slow / (size - slow) if size > slow else np.inf
+        for (p, size), (before, slow) in pairwise(fast)
+    ]
+
+
+def turns_sharply(control: Control, last: State) -> bool:
+    """Return whether a path that seems to run into a limit point does not: its rate grows by another law.
+
+    So it is at the critical load of a strip with a tiny imperfection.
+    """
+    rest, *earlier = _limits(control, last) or [np.inf]
+    return abs(rest) <= NEAR and any(abs(other - rest) > abs(rest) for other in earlier)
+
+
 def limit_point(control: Control, last: State) -> list[CriticalPoint]:
     """Return the limit point that a path ran into right after its last state, if it did.
 
-    Next to it the parameter is short of its limit by the square of the way to it. So the square of the rate
-    there grows as one over the rest, which is read from the last two states; the coordinates are off by twice
-    the rate times that rest. It goes on there along its tangent, at the same load.
+    The coordinates are off by twice the rate times the rest. It goes on there along its tangent, at the same
+    load.
     """
-    if not last.behind:
-        return []
-    measure, (before, _, earlier) = control.structure.measure, last.behind[0]
-    slow, fast = (float(np.sum((measure * rate)[~control.is_held] ** 2)) for rate in (earlier, last.rate))
-    rest = (last.parameter - before) * slow / (fast - slow) if fast > slow else np.inf
+    rest, *_ = _limits(control, last) or [np.inf]
     if abs(rest) > NEAR:
         return []
     kind = "turning point" if control.turning else "limit point"
