@@ -113,10 +113,11 @@ def load_power(pulls: Pulls, v: Array) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Loads:
-    """The named loads of a model."""
+    """The named loads of a model, and the numbers of those without a potential."""
 
     pulls: Pulls
     histories: Histories
+    following: Indices
 
     @classmethod
     def of(cls, model: Model, points: Array) -> "Loads":
@@ -134,7 +135,9 @@ class Loads:
             histories.append(load.history)
         instants, factors = np.array([point for each in histories for point in each]).reshape(-1, 2).T.copy()
         begins = np.cumsum([0, *map(len, histories)])
-        return cls(pulls=pulls_of(np.array(rows), np.array(table)), histories=(begins, instants, factors))
+        pulls = pulls_of(np.array(rows), np.array(table))
+        following = np.flatnonzero((pulls[1][:, 5] > 0.0) & pulls[1][:, :2].any(axis=1))
+        return cls(pulls=pulls, histories=(begins, instants, factors), following=following)
 
     def factors(self, time: float | None = None) -> Array | None:
         """Return the factors of the loads in full, or at an instant [s], (K,); None if there are none."""
@@ -144,23 +147,18 @@ class Loads:
         return factors if factors.size else None
 
     @property
-    def _following(self) -> Indices:
-        table = self.pulls[1]
-        return np.flatnonzero((table[:, 5] > 0.0) & table[:, :2].any(axis=1))
-
-    @property
     def follows(self) -> bool:
         """Whether there are loads without a potential."""
-        return len(self._following) > 0
+        return len(self.following) > 0
 
     def tangent(self, share: float, numbers: Indices, u: Array, size: int) -> tuple[Array, Array]:
         """Return vectors (R, size), whose products a share of the loads that follow adds to the tangent.
 
         numbers (rows, 3): coordinates. u (rows, 3): displacements and turns.
         """
-        (rows, table, factors, _), follow = self.pulls, self._following
-        left, right = np.zeros((2, len(follow), size))
-        for r, k in enumerate(follow):
+        rows, table, factors, _ = self.pulls
+        left, right = np.zeros((2, len(self.following), size))
+        for r, k in enumerate(self.following):
             x, y = turned(u[rows[k], 2], *(share * factors[k] * table[k, :2]))
             left[r, numbers[rows[k], :2]] = y, -x
             right[r, numbers[rows[k], 2]] = 1.0
