@@ -2,9 +2,9 @@
 
 Data flow one way, and so do the imports:
 
-    strip, effects -> model; law, places, loads, matrix -> structure (with the mesh) -> control
-    control (with Newton's method) -> response (with critical points) -> path -> statics
-    structure -> mass, drives -> actions -> motion -> schemes -> dynamics
+    strip, effects -> model; law, places, loads -> actions; actions, matrix -> structure (with the mesh)
+    structure -> control (with Newton's method) -> response (with critical points) -> path -> statics
+    structure -> mass, drives -> motion -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes
     plate: one strip as a plate, the stiffness that beam theory neglects, and its rigidity -> structure
 

@@ -281,43 +281,39 @@ class NothingHolds(InvalidParameter):
 
 
 def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
-    """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
-    first, strips, places = structure.first_body, len(structure.model.strips), structure.points
-    motions = [_motions(structure, k, place) for k, place in enumerate(places, start=strips)]
-    rates = np.vstack([np.zeros((0, 3 * (strips + len(places)))), *motions])
-    free = null_space(np.vstack([*_tied(structure), rates[[at - first for at in held]]]), rcond=RIGID)
-    chosen: list[int] = []
-    for place, row in enumerate(rates, start=first):
-        if np.abs(row @ free).max(initial=0.0) > RIGID:
-            chosen.append(place)
-            free = free @ null_space((row @ free)[None], rcond=RIGID)
-    return np.array(chosen, dtype=np.int64)
-
-
-def _tied(structure: Structure) -> Iterable[Array]:
-    """Yield the rates (K, 3 (G + B)) that ends of strips and springs resist in rigid motions of all parts."""
-    model, strips = structure.model, len(structure.model.strips)
-    ground = strips + len(model.bodies)
-    for (strip, end), there in np.ndenumerate(model.ends):
-        if there != FREE:
-            place, on = model.rest[strip, -end], ground if there == GROUND else strips + int(there)
-            ties = _motions(structure, strip, place) - _motions(structure, on, place)
-            yield ties[: 2 if model.strips[strip].hinges[end] else 3]
-    (roots, rows, _, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
-    for pair, stiffness in zip(rows[roots:] - structure.nodes, stiffnesses[roots:], strict=True):
-        one, other = (_motions(structure, strips + b, centres[b]) for b in pair)
-        yield (one - other)[stiffness > 0.0]
-
-
-def _motions(structure: Structure, part: int, point: Array) -> Array:
-    """Return the rates (3, 3 (G + B)) of a point [over L] and a turn in the rigid motions of its part.
+    """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free.
 
     Parts are the strips, then the bodies, and last the ground, which does not move.
     """
-    many = len(structure.model.strips) + len(structure.model.bodies)
-    rates, (x, y) = np.zeros((3, 3 * many + 3)), point / structure.length
-    rates[:, 3 * part : 3 * part + 3] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
-    return rates[:, : 3 * many]
+    model, strips = structure.model, len(structure.model.strips)
+    ground = strips + len(model.bodies)
+
+    def motions(part: int, point: Array) -> Array:
+        """Return the rates (3, 3 parts) of a point [over L] and a turn in the rigid motions of its part."""
+        rates, (x, y) = np.zeros((3, 3 * ground + 3)), point / structure.length
+        rates[:, 3 * part : 3 * part + 3] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
+        return rates[:, : 3 * ground]
+
+    # rates that ends of strips and springs resist
+    ties = [np.zeros((0, 3 * ground))]
+    for (strip, end), there in np.ndenumerate(model.ends):
+        if there != FREE:
+            place, on = model.rest[strip, -end], ground if there == GROUND else strips + int(there)
+            resisted = 2 if model.strips[strip].hinges[end] else 3
+            ties.append((motions(strip, place) - motions(on, place))[:resisted])
+    (roots, rows, _, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
+    for pair, stiffness in zip(rows[roots:] - structure.nodes, stiffnesses[roots:], strict=True):
+        one, other = (motions(strips + b, centres[b]) for b in pair)
+        ties.append((one - other)[stiffness > 0.0])
+    points = enumerate(structure.points, start=strips)
+    rates = np.vstack([ties[0], *(motions(k, place) for k, place in points)])
+    free = null_space(np.vstack([*ties, rates[[at - structure.first_body for at in held]]]), rcond=RIGID)
+    chosen: list[int] = []
+    for coordinate, row in enumerate(rates, start=structure.first_body):
+        if np.abs(row @ free).max(initial=0.0) > RIGID:
+            chosen.append(coordinate)
+            free = free @ null_space((row @ free)[None], rcond=RIGID)
+    return np.array(chosen, dtype=np.int64)
 
 
 def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:

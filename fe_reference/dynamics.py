@@ -16,7 +16,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from .arrays import Array, Flags
+from .arrays import Array
 from .drives import DrivenRotation, Span, drive_spans
 from .errors import (
     Checked,
@@ -30,15 +30,15 @@ from .errors import (
     positive,
     require_kind,
 )
-from .mass import about_mass_centre, carried_over, couplings
+from .mass import about_mass_centre, carried_over
 from .model import Model, require_model
 from .modes import first_frequency
-from .motion import Progress, Samples, Scheme, Trajectory, course, trajectory
+from .motion import Progress, Samples, Trajectory, course, trajectory
 from .places import FREE
-from .schemes import RADIUS, Explicit, Implicit, critical_step
+from .schemes import RADIUS, Explicit, Implicit
 from .solution import Status
 from .statics import settled_state
-from .structure import Structure, structure_of
+from .structure import structure_of
 
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Part of the critical step that an explicit motion takes.
@@ -261,24 +261,25 @@ def solve_motion(
 
 def _integrate(model: Model, y: Array, run: Run) -> tuple[Samples, dict[str, float | str]]:
     """Integrate from rest at y; return the samples and the settings."""
-    own = structure_of(model)
+    own, still = structure_of(model), np.zeros_like(y)
+    kind: type[Explicit | Implicit] = Explicit if run.explicit else Implicit
 
     @cache
-    def scheme_of(led: tuple[int, ...]) -> Explicit | Implicit:
-        about = about_mass_centre(own, led)
-        return Explicit(*about) if run.explicit else Implicit(*about)
+    def scheme_of(led: tuple[int, ...]) -> Any:
+        return kind(*about_mass_centre(own, led))
 
     home = scheme_of(()).structure
     choices: dict[str, float] = {"spectral_radius": RADIUS}
     longest = run.duration
     if run.explicit:
-        still = Span(begin=0.0, end=0.0, rates={}, begins=False)
-        parts = {tuple(each.rates): each for each in (still, *drive_spans(model, run.drive, run.duration))}
-        limit = min(
-            _critical(scheme_of(span.led), span.held(scheme_of(span.led).structure), own, state)
-            for span in parts.values()
-            for state in (y, np.zeros_like(y))
-        )
+        free = Span(begin=0.0, end=0.0, rates={}, begins=False)
+        parts = {tuple(each.rates): each for each in (free, *drive_spans(model, run.drive, run.duration))}
+        limit = np.inf
+        for span in parts.values():
+            scheme = scheme_of(span.led)
+            for state in (y, still):
+                there, _ = carried_over(own, state, still, scheme.structure)
+                limit = min(limit, scheme.critical_step(there, span.held(scheme.structure)))
         choices, longest = {"critical_step_s": limit, "safety": SAFETY}, SAFETY * limit
     elif run.step is None:
         longest = 1.0 / (STEPS_PER_PERIOD * first_frequency(model))
@@ -286,17 +287,11 @@ def _integrate(model: Model, y: Array, run: Run) -> tuple[Samples, dict[str, flo
     run.require_affordable(model, h, steps, y.size)
     spans = drive_spans(model, run.drive, steps * h)
     began = perf_counter()
-    rest = carried_over(own, y, home), np.zeros_like(y)
+    rest = carried_over(own, y, still, home)
     samples = course(scheme_of, spans, *rest, h, run.chunks(steps), run.progress)
     samples.seconds = perf_counter() - began
     settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
     return samples, settings | choices
-
-
-def _critical(scheme: Scheme, held: Flags, own: Structure, y: Array) -> float:
-    """Return the critical step [s] at coordinates y of a model's `own` structure, with what is held."""
-    at, bodies = scheme.structure, scheme.bodies
-    return critical_step(at, bodies, carried_over(own, y, at), couplings(at, bodies, held))
 
 
 def checked(

@@ -44,105 +44,23 @@ class Several(Effect):
 
 @dataclass(frozen=True, kw_only=True)
 class Load(Several):
-    """A force (f_x, f_y) [N] and a moment [N m], times load factor or history.
+    """A force (f_x, f_y) [N] and a moment [N m], times load factor or history, on a body or a free end.
 
-    body: that it acts on, None: the only one. at: point of the body (x, y) [m] at rest where the force acts,
-    by default its centre. A dead force keeps its direction; a follower turns with what it acts on.
+    A dead force keeps its direction; a follower turns with what it acts on.
+
+    Attributes:
+        body: that it acts on, None: the only one. strip: whose free end it acts on, in place of a body.
+        moment: positive counter-clockwise [N m].
+        at: point of the body (x, y) [m] at rest where the force acts, by default its centre.
     """
 
     body: str | None = None
+    strip: str | None = None
     history: Annotated[History, read_history] = ALWAYS_FULL
     force: Annotated[Pair, pair, "N"] = (0.0, 0.0)
     moment: Annotated[float, finite, "N m"] = 0.0
     at: Annotated[Pair | None, optional, pair, "m"] = None
     follower: Annotated[bool, flag] = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class AppliedForce(Load):
-    """Force on a body.
-
-    Attributes:
-        force: (F_x, F_y) [N].
-        moment: none; the inherited point `at` [m] of the body may be off its centre.
-    """
-
-    force: Annotated[Pair, pair, "N"] = field()
-    moment: float = field(init=False, default=0.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class AppliedMoment(Load):
-    """Moment on a body.
-
-    Attributes:
-        moment: positive counter-clockwise [N m].
-        force, at, follower: none, for a moment has no point and turns with nothing.
-    """
-
-    moment: Annotated[float, finite, "N m"] = field()
-    force: Pair = field(init=False, default=(0.0, 0.0))
-    at: None = field(init=False, default=None)
-    follower: bool = field(init=False, default=False)
-
-
-@dataclass(frozen=True, kw_only=True)
-class TipForce(Load):
-    """Force and moment at the free end of a strip; a follower turns with the section there."""
-
-    strip: str
-    force: Annotated[Pair, pair, "N"] = field()
-    body: None = field(init=False, default=None)
-    at: None = field(init=False, default=None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Prescribed(Several):
-    """Coordinates of a body that are led, times the load factor.
-
-    body: None for the one whose rotation is driven, or the only one. In a motion it releases at the start, or
-    with a history goes on leading, times that.
-    """
-
-    body: str | None = None
-    history: Annotated[History | None, optional, read_history] = None
-
-    @property
-    def ends(self) -> tuple[float | None, ...]:
-        """Displacement x, y [m] and turn [rad] that the body is led to (3,), None where it is free."""
-        raise NotImplementedError
-
-
-@dataclass(frozen=True, kw_only=True)
-class DrivenDisplacement(Prescribed):
-    """Displacement that the centre of a body is led to.
-
-    Attributes:
-        displacement: (d_x, d_y) [m]. None in place of one of them leaves the body free that way.
-    """
-
-    displacement: Annotated[tuple[float | None, float | None], partly, "m"]
-
-    @property
-    def ends(self) -> tuple[float | None, ...]:
-        """Both displacements [m], and None for the free turn."""
-        return (*self.displacement, None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class _PrescribedRotation(Prescribed):
-    """Rotation that a body is led to, besides the body whose rotation is driven.
-
-    Attributes:
-        angle: positive counter-clockwise [rad].
-    """
-
-    angle: Annotated[float, finite, "rad"]
-
-    @property
-    def ends(self) -> tuple[float | None, ...]:
-        """None for both free displacements, and the angle [rad]."""
-        return None, None, self.angle
 
 
 def _ways(name: str, value: Any) -> tuple[str, ...]:
@@ -153,16 +71,30 @@ def _ways(name: str, value: Any) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Support(Prescribed):
-    """Coordinates of a body, of WAYS, that stay where they are at rest, in a motion too."""
+class Prescribed(Several):
+    """Coordinates of a body that are led, times the load factor, or that stay where they are at rest.
 
-    history: History | None = field(init=False, default=ALWAYS_FULL)
-    fixed: Annotated[tuple[str, ...], _ways]
+    Attributes:
+        body: None for the one whose rotation is driven, or the only one.
+        history: in a motion what is led releases at the start, or with a history goes on leading, times that.
+        displacement: (d_x, d_y) [m] of the centre. None in place of one of them leaves the body free that
+            way.
+        angle: positive counter-clockwise [rad], besides the body whose rotation is driven.
+        fixed: coordinates, of WAYS, that stay, in a motion too.
+    """
+
+    body: str | None = None
+    history: Annotated[History | None, optional, read_history] = None
+    displacement: Annotated[tuple[float | None, float | None] | None, optional, partly, "m"] = None
+    angle: Annotated[float | None, optional, finite, "rad"] = None
+    fixed: Annotated[tuple[str, ...] | None, optional, _ways] = None
 
     @property
     def ends(self) -> tuple[float | None, ...]:
-        """Zeros [m, rad] where the body is fixed, None where it is free."""
-        return tuple(0.0 if way in self.fixed else None for way in WAYS)
+        """Displacement x, y [m] and turn [rad] that the body is led to (3,), None where it is free."""
+        if self.fixed:
+            return tuple(0.0 if way in self.fixed else None for way in WAYS)
+        return *(self.displacement or (None, None)), self.angle
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -274,18 +206,27 @@ KNOWN: Mapping[str, type[Effect]] = {
     "strip_damping": StripDamping,
     "strip_drag": StripDrag,
     "body_damping": BodyDamping,
-    "applied_force": AppliedForce,
-    "applied_moment": AppliedMoment,
-    "tip_force": TipForce,
-    "driven_displacement": DrivenDisplacement,
-    "driven_rotation": _PrescribedRotation,
-    "support": Support,
+    "applied_force": Load,
+    "applied_moment": Load,
+    "tip_force": Load,
+    "driven_displacement": Prescribed,
+    "driven_rotation": Prescribed,
+    "support": Prescribed,
     "spring": Spring,
     "pre_strain": PreStrain,
     "clamped_width": Effect,
     "anticlastic": Effect,
     "root_compliance": RootCompliance,
     "shear": Effect,  # of shear-deformable elements, which have it in any case
+}
+#: Of effects that share a class: the parameters that are needed, and those that may be given.
+TAKES = {
+    "applied_force": (("force",), ("body", "history", "at", "follower")),
+    "applied_moment": (("moment",), ("body", "history")),
+    "tip_force": (("strip", "force"), ("history", "moment", "follower")),
+    "driven_displacement": (("displacement",), ("body", "history")),
+    "driven_rotation": (("angle",), ("body", "history")),
+    "support": (("fixed",), ("body",)),
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 T = TypeVar("T")
@@ -371,25 +312,19 @@ def twice(bodies: Sequence[str], at: int) -> InvalidParameter:
 
 
 def _each(name: str, given: Given) -> Iterable[Effect]:
-    """Yield the effects `name`, one for each set of parameters."""
-    if isinstance(given, Mapping):
-        yield _made(name, given)
-        return
-    if not issubclass(KNOWN[name], Several):
+    """Yield the effects `name`, one for each set of parameters, refused by name if they are not its own."""
+    kind, every = KNOWN[name], [given] if isinstance(given, Mapping) else given
+    if every is given and not issubclass(kind, Several):
         raise InvalidParameter(name, given, "the parameters of one effect, which acts once [name]")
-    if not given or not all(isinstance(each, Mapping) for each in given):
+    if not every or not all(isinstance(each, Mapping) for each in every):
         raise InvalidParameter(name, given, "parameters, or a sequence of them, one for each [name]")
-    for each in given:
-        yield _made(name, each)
-
-
-def _made(name: str, parameters: Mapping[str, Any]) -> Effect:
-    """Return the effect `name` with its parameters, refused by name if they are not those it has."""
-    known = {each.name: each.default is MISSING for each in fields(KNOWN[name]) if each.init}
-    for key in parameters:
-        if key not in known:
-            raise InvalidParameter(name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
-    missing = [key for key, needed in known.items() if needed and key not in parameters]
-    if missing:
-        raise InvalidParameter(name, dict(parameters), f"a value of {', '.join(missing)} [name]")
-    return KNOWN[name](**parameters)
+    own = fields(kind)
+    needed, others = TAKES.get(name) or ([each.name for each in own if each.default is MISSING], ())
+    known = [*needed, *others] if name in TAKES else [each.name for each in own]
+    for parameters in every:
+        for key in parameters:
+            if key not in known:
+                raise InvalidParameter(name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
+        if missing := [key for key in needed if parameters.get(key) is None]:
+            raise InvalidParameter(name, dict(parameters), f"a value of {', '.join(missing)} [name]")
+        yield kind(**parameters)

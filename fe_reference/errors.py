@@ -20,7 +20,7 @@ class InvalidParameter(ValueError):
     ...     BodyDesign(name="tip", centre=(0.1, 0.0), mass=-1.0)
     ... except InvalidParameter as refusal:
     ...     print(refusal)
-    body_mass: got -1.0, expected a number not below 0 [kg]
+    mass: got -1.0, expected a number not below 0 [kg]
     """
 
     def __init__(self, name: str, got: object, expected: str) -> None:

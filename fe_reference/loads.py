@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array, Indices, kernel
-from .effects import BodyDamping, Load, Spring, StripDamping, TipForce
+from .effects import BodyDamping, Load, Spring, StripDamping
 from .errors import History
 from .matrix import Symmetric
 from .model import Model
@@ -113,17 +113,18 @@ def load_power(pulls: Pulls, v: Array) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Loads:
-    """The named loads of a model."""
+    """The named loads of a model, and the numbers of those without a potential."""
 
     pulls: Pulls
     histories: Histories
+    following: Indices
 
     @classmethod
     def of(cls, model: Model, points: Array) -> "Loads":
         """Return those of a model whose bodies are reduced about `points` (B, 2) [m]."""
         rows, table, histories = [], [], list[History]()
         for load in model.effects.every(Load):
-            if isinstance(load, TipForce):
+            if load.strip is not None:
                 row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)
             else:
                 k = model.body_index(load.body)
@@ -134,7 +135,9 @@ class Loads:
             histories.append(load.history)
         instants, factors = np.array([point for each in histories for point in each]).reshape(-1, 2).T.copy()
         begins = np.cumsum([0, *map(len, histories)])
-        return cls(pulls=pulls_of(np.array(rows), np.array(table)), histories=(begins, instants, factors))
+        pulls = pulls_of(np.array(rows), np.array(table))
+        following = np.flatnonzero((pulls[1][:, 5] > 0.0) & pulls[1][:, :2].any(axis=1))
+        return cls(pulls=pulls, histories=(begins, instants, factors), following=following)
 
     def factors(self, time: float | None = None) -> Array | None:
         """Return the factors of the loads in full, or at an instant [s], (K,); None if there are none."""
@@ -144,23 +147,18 @@ class Loads:
         return factors if factors.size else None
 
     @property
-    def _following(self) -> Indices:
-        table = self.pulls[1]
-        return np.flatnonzero((table[:, 5] > 0.0) & table[:, :2].any(axis=1))
-
-    @property
     def follows(self) -> bool:
         """Whether there are loads without a potential."""
-        return len(self._following) > 0
+        return len(self.following) > 0
 
     def tangent(self, share: float, numbers: Indices, u: Array, size: int) -> tuple[Array, Array]:
         """Return vectors (R, size), whose products a share of the loads that follow adds to the tangent.
 
         numbers (rows, 3): coordinates. u (rows, 3): displacements and turns.
         """
-        (rows, table, factors, _), follow = self.pulls, self._following
-        left, right = np.zeros((2, len(follow), size))
-        for r, k in enumerate(follow):
+        rows, table, factors, _ = self.pulls
+        left, right = np.zeros((2, len(self.following), size))
+        for r, k in enumerate(self.following):
             x, y = turned(u[rows[k], 2], *(share * factors[k] * table[k, :2]))
             left[r, numbers[rows[k], :2]] = y, -x
             right[r, numbers[rows[k], 2]] = 1.0

@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .arrays import Array, Flags, kernel
+from .arrays import Array, Flags
 from .matrix import Symmetric
 from .places import swept, turned
 from .structure import Structure
@@ -46,12 +46,6 @@ class RigidBodies:
     mass: Array
     centre: Array
     moment_of_inertia: Array
-
-    def rows(self, structure: Structure) -> tuple[Array, Array]:
-        """Return mass [kg] and moment of inertia [kg m^2] of the rows (rows,): infinite beside bodies."""
-        found = np.full((2, len(structure.numbers)), np.inf)
-        found[:, structure.nodes : -1] = self.mass, self.moment_of_inertia
-        return found[0], found[1]
 
     def block(self, structure: Structure, body: int, turn: float) -> Array:
         """Return the mass matrix (3, 3) of a body in its coordinates where it is turned [rad]."""
@@ -149,43 +143,20 @@ def couplings(structure: Structure, bodies: RigidBodies, held: Flags) -> Array:
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
-@kernel()
-def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
-    """Write the forces that resist the coupled motions as if the mass were diagonal.
-
-    With the first moment (X, Y) in place and y free, m y'' + X t'' - Y t'^2 = -f and X y'' + J t'' = -g. With
-    x free, -Y stands for X and X for Y.
+def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tuple[Array, Array]:
+    """Return coordinates and velocities of one structure in another with other points of the bodies.
 
     Args:
-        coupled: bodies that are led one way (K, 7), as of `couplings`.
-        u, v: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
-        out: resisting forces (rows, 3) [N, N m], changed.
+        before, after: reduced about the former points of the bodies and about the others.
+        y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
     """
-    for k in range(len(coupled)):
-        b, free, mass, inertia = int(coupled[k, 0]), int(coupled[k, 1]), coupled[k, 2], coupled[k, 3]
-        x, y = turned(u[b, 2], coupled[k, 4], coupled[k, 5])
-        cross, inward = (x, y) if free == 1 else (-y, x)
-        push, twist = inward * v[b, 2] ** 2 - out[b, free], -out[b, 2]
-        if coupled[k, 6] > 0.0:  # a led turn bears what the free motion exerts
-            out[b, free] = -push
-            out[b, 2] += cross * push / mass
-        else:
-            rest = mass * inertia - cross * cross
-            out[b, free] = -mass * (inertia * push - cross * twist) / rest
-            out[b, 2] = -inertia * (mass * twist - cross * push) / rest
-
-
-def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:
-    """Return coordinates y (size,) [m, rad] of one structure in another with other points of the bodies.
-
-    With velocities v (size,) [m/s, rad/s], return the velocities instead.
-    """
-    moved = y.copy() if v is None else v.copy()
+    y, v = y.copy(), v.copy()
     for k in range(0 if after is before else len(before.points)):
         at, offset = before.body_slice(k), after.points[k] - before.points[k]
-        arm, way = turned(y[at][2], *offset), swept(y[at][2], *offset)
-        moved[at.start : at.start + 2] += way if v is None else (-v[at][2] * arm[1], v[at][2] * arm[0])
-    return moved
+        (x_arm, y_arm), way = turned(y[at][2], *offset), swept(y[at][2], *offset)
+        y[at][:2] += way
+        v[at][:2] += -v[at][2] * y_arm, v[at][2] * x_arm
+    return y, v
 
 
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:

@@ -8,12 +8,13 @@ is the one of two straight strips that cross without touching, and their body.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from .arrays import Array, Indices, rotation_matrix
 from .effects import (
+    ALWAYS_FULL,
     CURL,
     DEFAULT_EFFECTS,
     SIDES,
@@ -23,13 +24,14 @@ from .effects import (
     Prescribed,
     PreStrain,
     Spring,
-    TipForce,
     index_of,
     twice,
 )
 from .errors import (
+    Checked,
     History,
     InvalidParameter,
+    Pair,
     choice,
     count,
     finite,
@@ -45,8 +47,8 @@ from .strip import FIXED, StripDesign
 ELEMENTS = ("corotational", "reissner")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BodyDesign:
+@dataclass(frozen=True, kw_only=True)
+class BodyDesign(Checked):
     """A rigid body; without mass and inertia it is the common end node of its strips.
 
     Parameters
@@ -69,15 +71,10 @@ class BodyDesign:
     0.05
     """
 
-    centre: Array
-    mass: float = 0.0
-    moment_of_inertia: float = 0.0
+    centre: Annotated[Pair | Sequence[float], pair, "m"]
+    mass: Annotated[float, not_negative, "kg"] = 0.0
+    moment_of_inertia: Annotated[float, not_negative, "kg m^2"] = 0.0
     name: str = "body"
-
-    def __post_init__(self) -> None:
-        not_negative("body_mass", self.mass, "kg")
-        not_negative("body_moment_of_inertia", self.moment_of_inertia, "kg m^2")
-        object.__setattr__(self, "centre", np.array(pair("centre", self.centre, "m")))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,7 +123,7 @@ class Model:
         """Refuse loads, springs and drives on what is not there."""
         effects, bodies = self.effects, self.body_names
         for load in effects.every(Load):
-            if not isinstance(load, TipForce):
+            if load.strip is None:
                 index_of(bodies, load.body)
             elif self.ends[self.strip_index(load.strip), 1] != FREE:
                 raise InvalidParameter("tip_force", load.strip, "a strip whose tip is free [name]")
@@ -225,7 +222,7 @@ class Model:
                 if at in found and end is not None:
                     raise twice(self.body_names, at)
                 if end is not None:
-                    found[at] = (end, effect.history)
+                    found[at] = (end, ALWAYS_FULL if effect.fixed else effect.history)
         return found
 
     def strip_index(self, name: str) -> int:
@@ -366,16 +363,19 @@ def cross_axis_pivot(
     >>> len(pivot.strips), pivot.elements
     (2, 8)
     """
-    ground, ends = _clamps(
-        positive("length", length, "m"),
-        within("inclination", inclination, 0.0, 0.5 * np.pi, "rad"),
-        within("crossing_ratio", crossing_ratio, 0.0, 1.0, "1"),
-    )
+    positive("length", length, "m")
+    angle = within("inclination", inclination, 0.0, 0.5 * np.pi, "rad")
+    ratio = within("crossing_ratio", crossing_ratio, 0.0, 1.0, "1")
+    run, rise = length * np.cos(angle), length * np.sin(angle)
+    ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
+    ends = ground + np.array([[run, rise], [-run, rise]])
     turn = rotation_matrix(finite("orientation", orientation, "rad")).T
     offset = np.array(pair("centre_offset", centre_offset, "m"))
     ground, ends, offset = ground @ turn, ends @ turn, offset @ turn
     centre = ends.mean(axis=0) + offset
-    body = BodyDesign(centre=centre, mass=body_mass, moment_of_inertia=body_moment_of_inertia)
+    mass = not_negative("body_mass", body_mass, "kg")
+    inertia = not_negative("body_moment_of_inertia", body_moment_of_inertia, "kg m^2")
+    body = BodyDesign(centre=tuple(centre), mass=mass, moment_of_inertia=inertia)
     strips = [
         StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **section)
         for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
@@ -388,10 +388,3 @@ def cross_axis_pivot(
         elements=elements,
         element=element,
     )
-
-
-def _clamps(length: float, angle: float, ratio: float) -> tuple[Array, Array]:
-    """Return the ends of both strips on ground and on the body (2, 2) [m]."""
-    run, rise = length * np.cos(angle), length * np.sin(angle)
-    ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
-    return ground, ground + np.array([[run, rise], [-run, rise]])

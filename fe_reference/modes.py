@@ -147,7 +147,11 @@ def natural_frequencies(
             y, _ = settled_state(model, rotation, body, increments, starts=True)
             time = 0.0
         tangent = structure.evaluate(y, load=structure.loads.factors(time)).tangent
-        values, full = _lowest(structure, y, tangent, ~_held(model, body, held), kind, count)
+        at = None if body is None else model.body_index(body)
+        # what a release keeps: what is led on, and a held turn
+        kept = [structure.first_body + k for k, (_, history) in model.prescribed(at).items() if history]
+        kept += [int(structure.turns[at or 0])] if held else []
+        values, full = _lowest(structure, y, tangent, ~structure.flags(kept), kind, count)
         count = len(values)  # of finer meshes as many as of the first
         moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
         return Modes(
@@ -188,16 +192,6 @@ def _frequencies(modes: Modes) -> Quantities:
     """Return the frequencies by name, each with the largest as its unit."""
     largest = float(np.abs(modes.frequency).max())
     return {f"frequency_{k}": (value, largest) for k, value in enumerate(modes.frequency, start=1)}
-
-
-def _held(model: Model, body: str | None, turn: bool) -> Flags:
-    """Return which coordinates a release keeps (size,): what is led on, and a held turn."""
-    structure = structure_of(model)
-    held = np.zeros(structure.size, dtype=bool)
-    if turn:
-        held[structure.turns[model.body_index(body)]] = True
-    led = model.prescribed(None if body is None else model.body_index(body))
-    return held | structure.flags([structure.first_body + at for at, (_, history) in led.items() if history])
 
 
 def _lowest(

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from .actions import Actions, Instant
+from .actions import couple, resist
 from .arrays import Array, Flags
 from .drives import Span
+from .law import FORCES, MATERIAL
+from .loads import load_power, put_factors
 from .mass import RigidBodies, carried_over, couplings
 from .solution import Answer, Status
 from .structure import Structure, structure_of
@@ -27,6 +29,27 @@ ENERGIES = {"kinetic_energy": 1, "strain_energy": 1, "gravity_energy": 1, "work"
 SIGNS = np.array([*ENERGIES.values()])
 
 
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """A motion at an instant, and what resists it there.
+
+    Attributes:
+        time [s]. y, v, a (size,): coordinates, velocities, accelerations.
+        force (size,): what resists [N, N m]. strain, gravity: energies [J].
+        load_power, loss_power: of the loads, and lost in dampers [W].
+    """
+
+    time: float
+    y: Array
+    v: Array
+    force: Array
+    strain: float
+    gravity: float
+    load_power: float
+    loss_power: float
+    a: Array = field(default_factory=lambda: np.zeros(0))
+
+
 class Scheme:
     """A way to integrate the motion of a structure reduced about the centres of mass of its `bodies`.
 
@@ -40,7 +63,7 @@ class Scheme:
 
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
         self.structure, self.bodies = structure, bodies
-        self.mass, self.actions = bodies.diagonal(structure), Actions(structure)
+        self.mass, self.coupled = bodies.diagonal(structure), np.zeros((0, 7))
         self.held = np.zeros(structure.size, dtype=bool)
         self.off = np.flatnonzero((bodies.centre != structure.points).any(axis=1)).tolist()
 
@@ -53,10 +76,25 @@ class Scheme:
             held: which coordinates are led at their velocities (size,).
         """
         self.held, inert = held, (self.mass > 0.0) & ~held
-        self.actions.coupled = couplings(self.structure, self.bodies, held)
+        self.coupled = couplings(self.structure, self.bodies, held)
         self.inverse = np.where(inert, 1.0 / np.where(inert, self.mass, 1.0), 0.0)
-        now = self.actions.resist(y, v, time)
+        now = self.resist(y, v, time)
         return replace(now, a=-self.inverse * now.force)
+
+    def resist(self, y: Array, v: Array, time: float) -> Instant:
+        """Return the state of the motion with its resisting forces at an instant.
+
+        Args:
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
+            time: instant [s], which gives the factors of the loads.
+        """
+        s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(y, v))
+        put_factors(s.loads.histories, time, s.loads.pulls[2])
+        asked = MATERIAL if s.relaxation else FORCES
+        strain, spring, gravity, _, loss = resist(s.tables, 1.0, 1.0, asked, state, s.written, s.curvature)
+        couple(self.coupled, *state, s.written[0])
+        power = load_power(s.loads.pulls, state[1])
+        return Instant(time, y, v, s.gathered(s.written[0]), sum(strain) + spring, gravity, power, loss)
 
     def go(self, now: Instant, step: float, steps: int, samples: "Samples") -> Instant | None:
         """Return the instant after steps of equal length [s], or None where the motion stopped; books their
@@ -158,10 +196,10 @@ class Samples:
                 f" between {self.time[-1]:.6g} s and {at.time:.6g} s"
             )
             return False
-        places = (scheme.structure, at.y, structure_of(scheme.structure.model))
+        y, v = carried_over(scheme.structure, at.y, at.v, structure_of(scheme.structure.model))
         self.time.append(at.time)
-        self.y.append(carried_over(*places))
-        self.v.append(carried_over(*places, at.v))
+        self.y.append(y)
+        self.v.append(v)
         self.energy.append(energy)
         return True
 
@@ -194,7 +232,7 @@ def course(
     samples = Samples(home=scheme)
     for span in spans:
         before, scheme = scheme.structure, scheme_of(span.led)
-        y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
+        y, v = carried_over(before, y, v, scheme.structure)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
         gained = scheme.kinetic(y, caught) - scheme.kinetic(y, v)
         # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work

@@ -231,32 +231,28 @@ def left_in_elements(
     places = middle[:, None] + half[:, None] * x
     at = np.array([[0.0]] if points == 1 else [[-1.0, 1.0]]) / np.sqrt(3.0)
 
-    def left(f: float) -> Array:
-        compliance = 1.0 / (1.0 - _left(f, width_ratio, poisson_ratio, places))
-        mean, slope = 0.5 * compliance @ weights, 1.5 * compliance @ (weights * x)
-        return np.asarray(1.0 - 1.0 / (mean[:, None] + slope[:, None] * at))
-
-    return _in_powers(left, flattens)
-
-
-def _left(f: float, width_ratio: float, poisson_ratio: float, places: Array) -> Array:
-    """Return P at places for one f."""
+    found = np.zeros((len(middle), points, TERMS))
     if poisson_ratio == 0.0:
-        return np.zeros_like(places)
-    g = _profile(*_layers(f * width_ratio, poisson_ratio), np.asarray(places) - 0.5)
-    return np.asarray(poisson_ratio**2 * f * g)
+        return found
 
+    def left(f: float) -> Array:
+        """Return P over f."""
+        g = _profile(*_layers(f * width_ratio, poisson_ratio), places - 0.5)
+        compliance = 1.0 / (1.0 - poisson_ratio**2 * f * g)
+        mean, slope = 0.5 * compliance @ weights, 1.5 * compliance @ (weights * x)
+        return np.asarray(1.0 - 1.0 / (mean[:, None] + slope[:, None] * at)) / f
 
-def _in_powers(left: Callable[[float], Array], flattens: bool) -> Array:
-    """Return the coefficients (..., TERMS) of f, f^2, ... of P with its values at the extrema of Chebyshev's
-    polynomial, of which f = 1 is one: P is proportional to f before f = 0."""
     if not flattens:
-        return np.pad(left(1.0)[..., None], [*[(0, 0)] * left(1.0).ndim, (0, TERMS - 1)])
+        found[..., 0] = left(1.0)
+        return found
+    # through the values at the extrema of Chebyshev's polynomial, of which f = 1 is one: P is proportional to
+    # f before f = 0
     nodes = 0.5 + 0.5 * np.cos(np.pi * np.arange(TERMS) / (TERMS - 1))
     nodes[-1] = NOTHING
-    values = np.stack([left(float(f)) / f for f in nodes])
-    found = np.linalg.solve(np.vander(nodes, increasing=True), values.reshape(TERMS, -1))
-    return np.moveaxis(found.reshape(values.shape), 0, -1)
+    values = np.stack([left(float(f)) for f in nodes])
+    powers = np.linalg.solve(np.vander(nodes, increasing=True), values.reshape(TERMS, -1))
+    found[:] = np.moveaxis(powers.reshape(values.shape), 0, -1)
+    return found
 
 
 @lru_cache(maxsize=256)

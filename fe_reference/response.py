@@ -7,10 +7,12 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
 
+from .actions import Tables
 from .arrays import Array, Flags, kernel
 from .control import Control, State, equilibrate
 from .law import Written
@@ -18,7 +20,7 @@ from .loads import between
 from .matrix import Singular, Symmetric
 from .model import Model
 from .places import turned
-from .structure import Evaluation, Structure, Tables, structure_of
+from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
 
@@ -69,7 +71,7 @@ def _stiffness_between(
     exceeds EI. What is `left` to equilibrium (size,) takes the round-off of places out of the forces.
     """
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
-    written = (structure.work[0], at.ends, at.matrices, structure.work[1])
+    written = (structure.written[0], at.ends, at.matrices, structure.written[3])
     own = float(_between(structure.tables, u, v, w, rest, written))
     own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (v[:, 2] * w[:, 2]))
     return own + between(structure.links, u, v, w) if len(structure.links[1]) else own
@@ -93,11 +95,8 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    ((_, table, first, _), (attached, carrier, offsets, _), _, _), (force, ends, matrices, _) = (
-        tables,
-        written,
-    )
-    total = 0.0
+    (_, table, first, _), (attached, carrier, offsets, _) = tables[0], tables[1]
+    (force, ends, matrices, _), total = written, 0.0
     force[:] = 0.0
     for e in range(len(first)):
         i, h = first[e], matrices[e]
@@ -254,18 +253,37 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 
+def _limits(control: Control, last: State) -> list[float]:
+    """Return what is left to a limit of the parameter after a state, by each two states behind each other.
+
+    Next to a limit the parameter is short of it by the square of the way to it. So the square of the rate
+    there grows as one over the rest.
+    """
+    states = ((last.parameter, last.y, last.rate), *last.behind)
+    free = control.structure.measure * ~control.is_held
+    fast = [(parameter, float(np.sum((free * rate) ** 2))) for parameter, _, rate in states]
+    return [
+        p - last.parameter + (p - before) * slow / (size - slow) if size > slow else np.inf
+        for (p, size), (before, slow) in pairwise(fast)
+    ]
+
+
+def turns_sharply(control: Control, last: State) -> bool:
+    """Return whether a path that seems to run into a limit point does not: its rate grows by another law.
+
+    So it is at the critical load of a strip with a tiny imperfection.
+    """
+    rest, *earlier = _limits(control, last) or [np.inf]
+    return abs(rest) <= NEAR and any(abs(other - rest) > abs(rest) for other in earlier)
+
+
 def limit_point(control: Control, last: State) -> list[CriticalPoint]:
     """Return the limit point that a path ran into right after its last state, if it did.
 
-    Next to it the parameter is short of its limit by the square of the way to it. So the square of the rate
-    there grows as one over the rest, which is read from the last two states; the coordinates are off by twice
-    the rate times that rest. It goes on there along its tangent, at the same load.
+    The coordinates are off by twice the rate times the rest. It goes on there along its tangent, at the same
+    load.
     """
-    if not last.behind:
-        return []
-    measure, (before, _, earlier) = control.structure.measure, last.behind[0]
-    slow, fast = (float(np.sum((measure * rate)[~control.is_held] ** 2)) for rate in (earlier, last.rate))
-    rest = (last.parameter - before) * slow / (fast - slow) if fast > slow else np.inf
+    rest, *_ = _limits(control, last) or [np.inf]
     if abs(rest) > NEAR:
         return []
     kind = "turning point" if control.turning else "limit point"

@@ -36,66 +36,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from .actions import Actions, Instant, advance
+from .actions import advance
 from .arrays import Array, Flags
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .loads import fastest
-from .mass import RigidBodies, lumped_elements
+from .mass import RigidBodies, couplings, lumped_elements
 from .matrix import Factors, Singular
-from .motion import Samples, Scheme
+from .motion import Instant, Samples, Scheme
 from .structure import Structure
-
-
-def critical_step(structure: Structure, bodies: RigidBodies, y: Array, coupled: Array | None = None) -> float:
-    """Return a step [s] below which the scheme is stable for small motion about the state y.
-
-    No frequency of the assembled mesh is above the highest one of its elements taken alone with their own
-    lumped masses, K_e x = lambda M_e x in the state y (element eigenvalue inequality). Attaching nodes to a
-    body restricts the motion and adds mass, and so does not raise it; the curvature of the master-slave map,
-    if it is stiffening, can add as much as itself over the body's inertia. Hence
-    w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J. Springs between bodies and
-    loads off the centres add their own.
-
-    The least mass of bodies that are led one way, `coupled`, is the lumped one times 1 - |(X, Y)| / sqrt(m J)
-    with the first moment (X, Y).
-
-    Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
-    h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
-    """
-    actions, links = Actions(structure), structure.links
-    mass, inertia = bodies.rows(structure)
-    square = _highest(structure, inertia, y, TANGENT)
-    square += float(np.max(structure.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
-    square += structure.loads.steepest(inertia)
-    square += fastest(links, links[3], mass, inertia)
-    for _, _, own, turning, *first, turn in () if coupled is None else coupled:
-        square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
-    decay = actions.drag_rate + fastest(links, links[4], mass, inertia)
-    if len(actions.dissipative[0]):
-        decay += float(actions.dissipative[0][0]) * _highest(structure, inertia, y, MATERIAL)
-    return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
-
-
-def _highest(structure: Structure, inertia: Array, y: Array, asked: int) -> float:
-    """Return a squared frequency [1/s^2] above those of all elements, and of roots that give way.
-
-    A root of stiffness k between a node of the inertia m and a body of the inertia J is shared out between
-    them, with 2 a b <= r a^2 + b^2 / r and r^2 = m / J: k (1 + r) to the node, k (1 + 1 / r) to the body.
-    """
-    lumped, local = lumped_elements(structure), structure.evaluate(y, asked=asked).matrices[:, :6, :6]
-    (roots, ends, _, stiffness, _), last = structure.links, structure.stations - 1
-    (node, row), stiffness = ends[:roots].T, stiffness[:roots, 2]
-    strip, place = np.divmod(node, last + 1)
-    end = np.sign(place)
-    element, turn = strip * last + end * (last - 1), 2 + 3 * end
-    ratio = np.sqrt(lumped[turn, element] / inertia[row])
-    local[element, turn, turn] += stiffness * (1.0 + ratio)
-    on_bodies = np.zeros(len(inertia))
-    np.add.at(on_bodies, row, stiffness * ratio * (1.0 + ratio) / lumped[turn, element])
-    root = np.sqrt(lumped).T
-    highest = np.linalg.eigvalsh(local / (root[:, :, None] * root[:, None, :]))[:, -1].max()
-    return float(highest + on_bodies.max())
 
 
 class Explicit(Scheme):
@@ -114,15 +63,67 @@ class Explicit(Scheme):
                 "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]",
             )
 
+    def critical_step(self, y: Array, held: Flags) -> float:
+        """Return a step [s] below which the scheme is stable for small motion about y (size,) [m, rad].
+
+        No frequency of the assembled mesh is above the highest one of its elements taken alone with their own
+        lumped masses, K_e x = lambda M_e x in the state y (element eigenvalue inequality). Attaching nodes to
+        a body restricts the motion and adds mass, and so does not raise it; the curvature of the master-slave
+        map, if it is stiffening, can add as much as itself over the body's inertia. Hence
+        w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J. Springs between bodies and
+        loads off the centres add their own.
+
+        The least mass of bodies that are led one way, by what is `held` (size,), is the lumped one times
+        1 - |(X, Y)| / sqrt(m J) with the first moment (X, Y).
+
+        Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
+        h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
+        """
+        s, links = self.structure, self.structure.links
+        mass, inertia = np.full((2, len(s.numbers)), np.inf)
+        mass[s.nodes : -1], inertia[s.nodes : -1] = self.bodies.mass, self.bodies.moment_of_inertia
+        square = self._highest(inertia, y, TANGENT)
+        square += float(np.max(s.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
+        square += s.loads.steepest(inertia) + fastest(links, links[3], mass, inertia)
+        for _, _, own, turning, *first, turn in couplings(s, self.bodies, held):
+            square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
+        decay = s.drag + fastest(links, links[4], mass, inertia)
+        if s.relaxation:
+            decay += s.relaxation * self._highest(inertia, y, MATERIAL)
+        return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
+
+    def _highest(self, inertia: Array, y: Array, asked: int) -> float:
+        """Return a squared frequency [1/s^2] above those of all elements, and of roots that give way.
+
+        A root of stiffness k between a node of the inertia m and a body of the inertia J is shared out
+        between them, with 2 a b <= r a^2 + b^2 / r and r^2 = m / J: k (1 + r) to the node, k (1 + 1 / r) to
+        the body.
+        """
+        s = self.structure
+        lumped, local = lumped_elements(s), s.evaluate(y, asked=asked).matrices[:, :6, :6]
+        (roots, ends, _, stiffness, _), last = s.links, s.stations - 1
+        (node, row), stiffness = ends[:roots].T, stiffness[:roots, 2]
+        strip, place = np.divmod(node, last + 1)
+        end = np.sign(place)
+        element, turn = strip * last + end * (last - 1), 2 + 3 * end
+        ratio = np.sqrt(lumped[turn, element] / inertia[row])
+        local[element, turn, turn] += stiffness * (1.0 + ratio)
+        on_bodies = np.zeros(len(inertia))
+        np.add.at(on_bodies, row, stiffness * ratio * (1.0 + ratio) / lumped[turn, element])
+        root = np.sqrt(lumped).T
+        highest = np.linalg.eigvalsh(local / (root[:, :, None] * root[:, None, :]))[:, -1].max()
+        return float(highest + on_bodies.max())
+
     def go(self, now: Instant, h: float, steps: int, samples: Samples) -> Instant:
         """Return the instant after steps of h [s]."""
-        s, actions, totals = self.structure, self.actions, np.zeros(2)
+        s, totals = self.structure, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
         state = s.displacement(now.y), s.velocity(now.y, late)
-        drives = actions.coupled, s.coordinates[self.held]
-        advance(actions.acting, *drives, s.spread(self.inverse), state, totals, now.time, h, steps)
+        acting = s.tables, s.written, s.curvature, s.loads.histories
+        drives = self.coupled, s.coordinates[self.held], s.spread(self.inverse)
+        advance(*acting, *drives, state, totals, now.time, h, steps)
         y, late = (s.gathered(moved) for moved in state)
-        after = actions.resist(y, late, now.time + steps * h)
+        after = self.resist(y, late, now.time + steps * h)
         a = -self.inverse * after.force
         v = late + 0.5 * h * a
         # what the loop gathered is brought from mid-step to the sample
@@ -234,7 +235,7 @@ class Implicit(Scheme):
         a, norms = now.a, [np.inf]
         for _ in range(ITERATIONS):
             y, v = coasting + reach * a, drifting + GAMMA * h * a
-            after = replace(self.actions.resist(y, v, time), a=a)
+            after = replace(self.resist(y, v, time), a=a)
             residual = (1.0 - AM) * mass * a + (1.0 - AF) * after.force + held
             residual[self.held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
@@ -264,8 +265,8 @@ class Implicit(Scheme):
         modified one.
         """
         tangent = self.structure.evaluate(y, load=self.structure.loads.factors(time)).tangent
-        if self.actions.damped:
-            tangent.data += GAMMA / (BETA * h) * self.actions.damping_matrix(y).data
+        if self.structure.damped:
+            tangent.data += GAMMA / (BETA * h) * self.structure.damping_matrix(y).data
         tangent.data *= 1.0 - AF
         tangent.left *= 1.0 - AF
         tangent.data[tangent.pattern.diagonal] += (1.0 - AM) / (BETA * h**2) * self.mass

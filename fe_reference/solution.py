@@ -17,7 +17,7 @@ from .law import FORCES
 from .model import Model, require_model
 from .places import FREE
 from .response import CriticalPoint, body_stiffness
-from .structure import Structure, structure_of
+from .structure import structure_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -399,12 +399,13 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     force_x, force_y, first, last = np.moveaxis(ends[..., :4], -1, 0).reshape(4, many, *rows)
     nodal = np.array([structure.displacement(each)[: structure.nodes] for each in y]).reshape(many, *grid, 3)
     force_x, force_y, moment = _midpoints(force_x), _midpoints(force_y), _at_nodes(-first, last)
-    angle = _nodal_angles(structure)
+    chord = structure.elements.chord.reshape(2, *rows)
+    angle = _midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
     axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
     natural, length = model.effects.find(PreStrain) or PreStrain(), structure.elements.length.reshape(rows)
-    area, inertia = _sections(model)
-    bent = moment / (_moduli(model) * inertia)
+    (area, inertia), modulus = _sections(model), [[strip.youngs_modulus] for strip in model.strips]
+    bent = moment / (modulus * inertia)
     if structure.elements.plate[:, 0].any():  # where it is no multiple of the moment
         bent = _midpoints(np.diff(nodal[..., 2]) / length)
     turning = np.diff(angle, axis=1) / length
@@ -414,7 +415,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
         shape=model.rest + nodal[..., :2],
         rotation=nodal[..., 2],
         curvature=_at_nodes(turning, turning) + bent + natural.curvature,
-        stretch=1.0 + axial / (_moduli(model) * area) + natural.strain,
+        stretch=1.0 + axial / (modulus * area) + natural.strain,
         axial_force=axial,
         shear_force=force_y * c - force_x * s,
         bending_moment=moment,
@@ -424,23 +425,12 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     )
 
 
-def _moduli(model: Model) -> Array:
-    """Return Young's moduli of the strips (G, 1) [Pa]."""
-    return np.array([[strip.youngs_modulus] for strip in model.strips])
-
-
 def _sections(model: Model) -> tuple[Array, Array]:
     """Return area [m^2] and second moment [m^4] at the nodes (G, P)."""
-    growths = zip(model.strips, model.arcs / model.lengths[:, None], strict=True)
-    own = [(strip, *strip.growth(places)) for strip, places in growths]
-    area = np.array([strip.area * growth for strip, growth, _ in own])
-    return area, np.array([strip.second_moment_of_area * growth for strip, _, growth in own])
-
-
-def _nodal_angles(structure: Structure) -> Array:
-    """Return the reference direction at the nodes (G, P) [rad] from those of the chords; see `_midpoints`."""
-    chord = structure.elements.chord.reshape(2, structure.strips, -1)
-    return _midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
+    places = model.arcs / model.lengths[:, None]
+    growth = np.array([strip.growth(at) for strip, at in zip(model.strips, places, strict=True)])
+    own = np.array([(strip.area, strip.second_moment_of_area) for strip in model.strips])
+    return growth[:, 0] * own[:, :1], growth[:, 1] * own[:, 1:]
 
 
 def _at_nodes(first: Array, last: Array) -> Array:

@@ -24,17 +24,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-from .arrays import Array, Flags, Indices, kernel
-from .effects import CURL, Gravity, PreStrain, RootCompliance
-from .law import CURL_TABLE, FORCES, TANGENT, TERMS, Energies, Given, Written, elements
-from .loads import Links, Loads, Pulls, add_links, link_forces, links_of, pull, pulls_of
+from .actions import resist
+from .arrays import Array, Flags, Indices
+from .effects import CURL, Gravity, PreStrain, RootCompliance, StripDamping, StripDrag
+from .law import CURL_TABLE, FORCES, MATERIAL, TANGENT, TERMS
+from .loads import Loads, Pulls, add_links, links_of, pull, pulls_of
 from .matrix import Envelope, Symmetric, assemble
 from .model import Model
-from .places import FREE, Carried, carry, carry_velocity, gather
+from .places import FREE, carry, carry_velocity
 from .plate import left_in_elements
-
-#: What of a structure resists by its place alone: elements, ends on bodies, weight and links.
-Tables = tuple[Given, Carried, Pulls, Links]
 
 
 class Evaluation(NamedTuple):
@@ -97,9 +95,17 @@ class Structure:
         )
         self.links = links_of(model, self.points, soft)
         self.loads = Loads.of(model, self.points)
-        self.tables: Tables = (self.given, self.carried, self._weight(), self.links)
-        rows = len(self.numbers)
-        self.work = (np.zeros((rows, 3)), np.zeros((4, 4)), np.zeros((rows, 3)))
+        damping, drag = model.effects.find(StripDamping), model.effects.find(StripDrag)
+        #: relaxation time of the strips [s], and rate of their drag [1/s]
+        self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
+        dampers = self.relaxation, self.drag * self.nodal_masses() if self.drag else np.zeros(0)
+        self.damped = bool(self.relaxation or self.drag or self.links[4].any())
+        self.tables = (self.given, self.carried, self._weight(), self.links, self.loads.pulls, dampers)
+        rows, many = len(self.numbers), len(self.element_numbers)
+        viscous = np.zeros((many if self.relaxation else 0, 8, 8))
+        #: what a motion writes: forces, ends, matrices and scratch of the elements, and curvature
+        self.written = (np.zeros((rows, 3)), np.zeros((many, 5)), viscous, np.zeros((4, 4)))
+        self.curvature, self._still = np.zeros((rows, 2)), np.zeros((rows, 3))
 
     def _number(self) -> list[tuple[int, int, float]]:
         """Number the reduced coordinates: those of rows (rows, 3), and of elements (E, 8).
@@ -234,12 +240,11 @@ class Structure:
         """
         many, tangent = len(self.element_numbers), self.pattern.zero()
         matrices, ends = np.zeros((many if asked != FORCES else 0, 8, 8)), np.empty((many, 5))
-        u, (force, scratch, still), work = self.displacement(y), self.work, 0.0
+        u, (force, _, _, scratch) = self.displacement(y), self.written
         written, curvature = (force, ends, matrices, scratch), np.empty((len(u), 2))
-        strain, spring, gravity = potential(self.tables, share, asked, u, still, written, curvature)
-        if load is not None:
-            self.loads.pulls[2][:] = load
-            work = pull(self.loads.pulls, acts, u, force, curvature)
+        self.loads.pulls[2][:] = 0.0 if load is None else load
+        found = resist(self.tables, share, acts, asked, (u, self._still), written, curvature)
+        strain, spring, gravity, work, _ = found
         if asked != FORCES:
             tangent = self.reduced_matrix(matrices, u)
         if asked == TANGENT:
@@ -263,6 +268,17 @@ class Structure:
         assemble(matrices, self.ends, self.carried, u, self.pattern.places, whole.data)
         return whole
 
+    def damping_matrix(self, y: Array) -> Symmetric:
+        """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""
+        local, u = np.zeros((len(self.element_numbers), 8, 8)), self.displacement(y)
+        if self.relaxation:
+            local += self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
+        half = 0.5 * self.drag * self.elements.linear_density * self.elements.length
+        local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]
+        whole = self.reduced_matrix(local, u)
+        add_links(self.links, u, self.links[4], whole)
+        return whole
+
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
         places = self.bodies(y).copy()
@@ -281,32 +297,6 @@ class Structure:
         )
         bend = 4.0 * (u_0 - 2.0 * u_1 + u_2)
         return full.gradient - none.gradient, u_2 - u_0 + 0.5 * bend, bend
-
-
-@kernel()
-def potential(
-    tables: Tables, share: float, asked: int, u: Array, still: Array, written: Written, curvature: Array
-) -> tuple[Energies, float, float]:
-    """Write forces and curvature at displacements.
-
-    Args:
-        tables: rows of the elements, attached nodes, weights and links.
-        share: part of the weight and of natural strains that acts [1].
-        asked: FORCES, MATERIAL or TANGENT, as of `law.elements`.
-        u: displacements of all rows (rows, 3) [m, rad].
-        still: velocities of zero (rows, 3).
-        written: arrays that `law.elements` writes.
-        curvature: second derivatives by turns (rows, 2) [N m], overwritten.
-
-    Returns:
-        Energies of the strips, of springs and of the full weight [J].
-    """
-    given, carried, weights, links = tables
-    bending, axial, shear = elements(given, share, asked, u, written)
-    gather(carried, u, written[0], curvature)
-    gravity = -pull(weights, share, u, written[0], curvature)
-    rooted, spring, _ = link_forces(links, u, still, written[0], curvature)
-    return (bending + rooted, axial, shear), spring, gravity
 
 
 @lru_cache(maxsize=16)

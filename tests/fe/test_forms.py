@@ -9,10 +9,10 @@ import pytest
 from skfem import Basis, BilinearForm, DiscreteField, Functional, LinearForm
 
 from fe_reference import ELEMENTS
-from fe_reference.actions import Actions
 from fe_reference.arrays import Array
 from fe_reference.law import FORCES, TANGENT, elements
 from fe_reference.mass import about_mass_centre
+from fe_reference.motion import Scheme
 from fe_reference.structure import Structure, structure_of
 from tests.fe.scenes import PARAMETERS, SIDED_SCENE, WIDE, four_bar
 from tests.gates import hold
@@ -136,14 +136,14 @@ def test_elements_are_what_scikit_fem_assembles(element: str) -> None:
 def test_what_resists_a_motion_is_the_gradient_with_loads_and_dampers(element: str) -> None:
     """The compiled resistance is the gradient of the potential, damping matrix times velocity, less loads."""
     model = four_bar(PARAMETERS, rise=0.003, elements=3, element=element)
-    structure = about_mass_centre(structure_of(model))[0]
-    actions, generator = Actions(structure), np.random.default_rng(5)
+    structure, bodies = about_mass_centre(structure_of(model))
+    scheme, generator = Scheme(structure, bodies), np.random.default_rng(5)
     y, v = 0.002 * generator.standard_normal((2, structure.size))
     y[structure.turns] = [1.1, -0.7, 2.0]
 
     def error(time: float = 5e-4) -> float:
-        acting, here = actions.resist(y, v, time), structure.evaluate(y, asked=FORCES)
-        viscous = actions.damping_matrix(y).times(v)
+        acting, here = scheme.resist(y, v, time), structure.evaluate(y, asked=FORCES)
+        viscous = structure.damping_matrix(y).times(v)
         loads = here.gradient + viscous - acting.force
         # half of (2, 1) kN on the coupler's centre, from 1 to -1 over 2 ms; 30 N m on the crank
         expected, at = np.zeros(structure.size), structure.body_slice(1).start

@@ -238,6 +238,19 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
     hold("fe_pressed_pivot", error)
 
 
+@pytest.mark.parametrize("part", [1e-9, 1e-10])
+def test_a_tiny_imperfection_bends_a_column_as_a_small_one_does(part: float) -> None:
+    """A load off the axis by a tiny part turns the path sharply at the Euler load; no limit point."""
+
+    def pushed(offset: float) -> Any:
+        load = {"force": (-1.2 * np.pi**2 * EI / (2.0 * GUIDE) ** 2, 0.0), "at": (GUIDE, offset * GUIDE)}
+        return solve_mechanism(tipped(TIP, applied_force=load))
+
+    found = pushed(part)
+    assert found.critical_points == () and found.message == ""
+    assert np.allclose(found.bodies["tip"][-1], pushed(1e-6).bodies["tip"][-1], rtol=1e-4)
+
+
 def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
     """It is placed by the eigenvalue that vanishes there, not by the increment that passes it."""
     paths = [
