@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.tables import DIRECTION, SIGN
+from spline_model.paper import SPEED, clamps_of, strips_of
 
 Array = NDArray[np.float64]
 
@@ -24,14 +24,11 @@ the points of a Bezier strip of more than twenty are known no better. Another br
 
 def refuse(system: System, z: Array) -> str:
     """Return why a converged state z (N,) [m, rad, N] is no strip; an empty string if it is one."""
-    clamps = system.clamps
-    for c, ((end, inner, body, _), numbers) in enumerate(zip(clamps.place, clamps.numbers, strict=True)):
-        chord = numbers[SIGN] * (z[inner : inner + 2] - z[end : end + 2])
-        angle = numbers[DIRECTION] + (z[body + 2] if body >= 0 else 0.0)
-        if not chord[0] * np.cos(angle) + chord[1] * np.sin(angle) > 0:
-            return f"the end tangent at clamp {c + 1} points backwards"
-    x, y, _, _ = system.points.derivatives(z)
-    slowest = float((np.hypot(x, y) / system.points.speed).min(initial=np.inf))
+    backwards = np.flatnonzero(~(clamps_of(system).gaps(z)[1][0] > 0.0))
+    if backwards.size:
+        return f"the end tangent at clamp {backwards[0] + 1} points backwards"
+    x, y, _, _ = strips_of(system).derivatives(z)
+    slowest = float((np.hypot(x, y) / strips_of(system).along[..., SPEED]).min(initial=np.inf))
     if not slowest > SLOWEST_SPEED:
         return f"the centreline is folded: |C'| falls to {slowest:.2g} of its value at rest"
     return ""

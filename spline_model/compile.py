@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
-from typing import Any, Self, TypeVar
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,17 +25,15 @@ from spline_model.effects import (
     StripInertia,
 )
 from spline_model.effects.base import Constraint
+from spline_model.effects.boundary import FOLLOWER
 from spline_model.errors import InvalidParameter
 from spline_model.followers import NO_FOLLOWERS, Followers
 from spline_model.frames import Frames
 from spline_model.layout import Layout
-from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
-from spline_model.tables import ClampTable, DriveTable, LoadTable, between_bodies, frames_of, weight
+from spline_model.tables import DriveTable, LoadTable, between_bodies, frames_of, weight
 
 Array = NDArray[np.float64]
-Table = TypeVar("Table")
-
 
 UNTURNED = ("layout", "scales", "loads", "weight", "prescribed", "is_preloaded", "rest")
 """What of a system is the same at all rotations, and made once."""
@@ -43,13 +41,9 @@ UNTURNED = ("layout", "scales", "loads", "weight", "prescribed", "is_preloaded",
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class System:
-    """A scene with its units; each table and matrix is made when it is first asked for.
-
-    changed : tables that are not those of the scene, by name.
-    """
+    """A scene with its units; each table and matrix is made when it is first asked for."""
 
     scene: Scene
-    changed: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property
     def layout(self) -> Layout:
@@ -73,30 +67,26 @@ class System:
         vars(same).update(scene=scene, drives=drives._replace(target=target), _made=self._made)
         return same
 
-    def with_tables(self, **changed: Any) -> System:
-        """The same scene with other tables of these names."""
-        return replace(self, changed={**self.changed, **changed})
-
-    @cached_property
-    def points(self) -> PointTable:
-        """Gauss points of bending and stretching."""
-        return self._table("points", PointTable.of)
+    def under(self, acting: LoadTable) -> System:
+        """The same scene under other loads."""
+        same = System(scene=self.scene)
+        vars(same).update(acting=acting, loads=acting.rows(acting.turns != FOLLOWER), _made=self._made)
+        return same
 
     @cached_property
     def drives(self) -> DriveTable:
         """Driven coordinates."""
-        return self._table("drives", DriveTable.of)
+        return DriveTable.of(self.scene)
 
     @cached_property
     def loads(self) -> LoadTable:
         """Loads that grow and have a potential, one row a component."""
-        return self._table("loads", LoadTable.of)
+        return LoadTable.of(self.scene)
 
-    @property
+    @cached_property
     def acting(self) -> LoadTable:
         """All loads that grow."""
-        whole = partial(LoadTable.of, followers=True)
-        return self._table("acting", whole) if self.scene.followers else self.loads
+        return LoadTable.of(self.scene, followers=True) if self.scene.followers else self.loads
 
     @cached_property
     def followers(self) -> Followers:
@@ -113,7 +103,7 @@ class System:
     @cached_property
     def weight(self) -> Array:
         """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
-        return self._table("weight", weight)
+        return weight(self.scene)
 
     @cached_property
     def springs(self) -> Array:
@@ -142,11 +132,6 @@ class System:
         force = moved @ self.springs if self.springs.size else 0.0 * moved
         return np.asarray(0.5 * (force * moved).sum(axis=-1))
 
-    @cached_property
-    def clamps(self) -> ClampTable:
-        """Clamped ends of strips."""
-        return self._table("clamps", ClampTable.of)
-
     def once(self, name: str, make: Callable[[System], Any]) -> Any:
         """Return what ``make`` makes of the system, kept with it under a name."""
         if name not in self._made:
@@ -156,10 +141,6 @@ class System:
     @cached_property
     def _made(self) -> dict[str, Any]:
         return {}
-
-    def _table(self, name: str, make: Callable[[Scene], Table]) -> Table:
-        changed: Table = self.changed[name] if name in self.changed else make(self.scene)
-        return changed
 
     @cached_property
     def mass(self) -> Array:

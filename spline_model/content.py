@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SlideModes
-from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
 from spline_model.design import Design
 from spline_model.discretisation import motion_penalty_stiffness
@@ -32,7 +31,7 @@ from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
-from spline_model.quadrature import RIGIDITY
+from spline_model.paper import RIGIDITY, assemble, clamps_of, room, strips_of
 from spline_model.scene import Scene
 from spline_model.statics import static_state
 
@@ -164,11 +163,11 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
     """Share of each mode's strain energy in stretching, (F,)."""
     layout = system.layout
     count, size = layout.coordinate_count, layout.size
-    gradient, hessian, free, points = np.zeros(size), np.zeros((size, size)), z.copy(), system.points
+    gradient, hessian, free, strips = np.zeros(size), np.zeros((size, size)), z.copy(), strips_of(system)
     free[count:] = 0.0  # the stiffness of stretching alone, no force's
-    limp = points._replace(numbers=points.numbers.copy())
-    limp.numbers[:, RIGIDITY] = 0.0
-    assemble(free, limp, system.clamps, gradient, hessian, np.empty((5, 4)))
+    limp = strips._replace(along=strips.along.copy())
+    limp.along[..., RIGIDITY] = 0.0
+    assemble(free, limp, clamps_of(system), gradient, hessian, room(strips))
     stiffness = hessian[:count, :count].copy()
     for i, effect in enumerate(system.scene.of(MixedStretching)):
         if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):

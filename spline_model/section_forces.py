@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SlideModes
-from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.effects import GROUND, MixedStretching
 from spline_model.errors import InvalidParameter, require_choice
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
+from spline_model.paper import evaluate
 from spline_model.scene import Scene
 from spline_model.sections import STATIONS, Sections, by_piece, reactions, sections
 

@@ -36,9 +36,19 @@ from spline_model.errors import (
     require_finite,
     require_positive,
 )
-from spline_model.impulses.arrays import COUNTS, ENERGY, LOST, Moving, Problem, Space, loads_of
-from spline_model.impulses.steps import printed_advance, stable_advance
-from spline_model.impulses.system import strain_energy
+from spline_model.impulses import (
+    COUNTS,
+    ENERGY,
+    LOST,
+    Moving,
+    Problem,
+    Space,
+    loads_of,
+    printed_advance,
+    sizes_of,
+    stable_advance,
+    strain_energy,
+)
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import linear_modes
 from spline_model.motion.arrays import zeros
@@ -80,7 +90,7 @@ def _store(moving, problem, space, record):
     size, count = moving.z.size, moving.v.size
     copy(moving.z, record[:size])
     copy(moving.v, record[size : size + count])
-    record[size + count] = strain_energy(moving.z, moving.v, problem, space)
+    record[size + count] = strain_energy(moving.z, problem, space)
     record[size + count + 1] = moving.status[LOST]
 
 
@@ -119,15 +129,14 @@ class Stepper(Moves):
         self.motion, self._form, motion = start.motion, form, start.motion
         self.name = f"sequential impulses, {form}"
         self.settings = {} if sweeps is None else {"sweeps": sweeps}
-        problem = Problem.of(motion, soft=form == "stable", sweeps=sweeps, tolerance=tolerance)
-        sizes = {"N": len(problem.unit), "Q": len(problem.mass), "R": len(problem.rows)}
-        self._given = problem, zeros(Space, sizes | {"M": len(problem.rigidity)})
+        problem = Problem.of(motion, sweeps=sweeps, tolerance=tolerance)
+        self._given = problem, zeros(Space, sizes_of(problem))
         self.counters = np.zeros(6, dtype=np.int64)
         z, v = start.z.copy(), start.v.copy()
         q, status = z[: v.size].copy(), np.zeros(3)
         earlier = np.array((q, v))
         self.state = Moving(z, v, earlier=earlier, begun=q, status=status, counters=self.counters)
-        status[ENERGY] = 0.5 * v @ problem.mass @ v + strain_energy(z, v, *self._given)
+        status[ENERGY] = 0.5 * v @ problem.mass @ v + strain_energy(z, *self._given)
         self.width = len(z) + len(v) + 2
 
     def switch(self, time: float, span: float) -> None:

@@ -1,4 +1,4 @@
-"""From frozen values to the flat tables that the paper's bordered form and the motions walk."""
+"""From frozen values to the flat tables of drives, loads, springs and frames."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from spline_model.effects import (
     GROUND,
     BodyGravity,
-    Clamp,
     Driven,
     Spring,
     StripGravity,
@@ -25,48 +24,8 @@ from spline_model.scene import Scene
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-END, INNER, BODY, ROW = range(4)
-"""Columns of ``ClampTable.place``."""
-SIGN, ACROSS, ALONG, DIRECTION = range(4)
-"""Columns of ``ClampTable.numbers``."""
 PLACES = ("coordinate", "row", "turns", "prop")
-"""Columns of whole numbers of the other two tables."""
-
-
-class ClampTable(NamedTuple):
-    """One row a clamp, C in all.
-
-    place (C, 4): indices in z of x of the end's control point, of its neighbour and of the body, -1 for the
-    ground, and of the first of its three multipliers. numbers (C, 4): sign, +1 at the start of a strip and -1
-    at its end, so that sign * (inner - end) points along C'; clamped point from the body's centre [m];
-    angle of m at rest [rad].
-    """
-
-    place: Indices
-    numbers: Array
-
-    @classmethod
-    def of(cls, scene: Scene) -> Self:
-        """The clamped strip ends of a scene."""
-        places, numbers = [], []
-        for i, clamp in enumerate(scene.of(Constraint)):
-            if not isinstance(clamp, Clamp):
-                continue
-            strip = scene.strip(clamp.strip)
-            start, count = scene.layout.strips[clamp.strip]
-            at_start = clamp.end == "start"
-            end, inner = (0, 1) if at_start else (count - 1, count - 2)
-            sign = 1.0 if at_start else -1.0
-            along = sign * (strip.control_points[inner] - strip.control_points[end])
-            centre = np.zeros(2) if clamp.to == GROUND else scene.body(clamp.to).centre
-            body = -1 if clamp.to == GROUND else scene.layout.bodies[clamp.to]
-            places.append((start + 2 * end, start + 2 * inner, body, scene.layout.multipliers[i][0]))
-            point = strip.control_points[end] - centre
-            numbers.append((sign, *point, np.arctan2(along[1], along[0])))
-        return cls(
-            place=np.array(places, dtype=np.int64).reshape(-1, 4),
-            numbers=np.array(numbers, dtype=float).reshape(-1, 4),
-        )
+"""Columns of whole numbers."""
 
 
 class DriveTable(NamedTuple):

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.basis import Bezier
-from spline_model.bordered import evaluate
 from spline_model.compile import System
 from spline_model.effects import Bending, Stretching
 from spline_model.followers import Followers
 from spline_model.frames import Frames, carry, fold, spread
-from spline_model.quadrature import MEASURE, WEIGHT
+from spline_model.paper import RIGIDITY, SPEED, evaluate, strips_of
 
 Array = NDArray[np.float64]
 
@@ -124,11 +123,7 @@ class Followed:
 
         load_factor [1] of the loads; share [1] of the preload.
         """
-        system = self.system
-        if share != 1.0:
-            points, weight = system.points.with_share(share), share * system.weight
-            system = system.with_tables(points=points, weight=weight)
-        return evaluate(system, z, load_factor, self.gradient, self.hessian)
+        return evaluate(self.system, z, load_factor, self.gradient, self.hessian, share)
 
     def external(self, z: Array) -> tuple[float, float]:
         """Return the work from rest to z (N,) of all loads at load factor 1, and of all weight [J]."""
@@ -317,17 +312,14 @@ def moment_defect(system: System, z: Array, share: float = 1.0) -> float:
     are not clamped at their root are skipped. Source: Prager and Synge, Q Appl Math 5 (1947) 241: the error
     in energy of two dual fields.
     """
-    table = system.points if share == 1.0 else system.points.with_share(share)
-    x1, y1, x2, y2 = table.derivatives(z)
-    square = x1**2 + y1**2
-    speed = np.where(table.place[:, MEASURE] == 0, table.speed, np.sqrt(square))
-    moment = table.moments((x1 * y2 - y1 * x2) / square / speed - table.curvature)
+    strips = strips_of(system).with_share(share)
+    moments, length = strips.moments(z), strips.weight * strips.along[..., SPEED]
     wrong, stored = 0.0, SMALLEST_MOMENT**2 * system.scales.energy
-    for rows, points, clamp, (values, where), load in system.once("strips in balance", _in_balance):
-        ds = table.numbers[rows, WEIGHT] * table.speed[rows] / table.rigidity[rows]
+    for s, points, clamp, (values, where), load in system.once("strips in balance", _in_balance):
+        ds, moment = length[s] / strips.along[s, :, RIGIDITY], moments[s]
         held = balance(z[points].reshape(-1, 2), values, where, z[clamp], share * load)
-        wrong += float(ds @ (moment[rows] - held) ** 2)
-        stored += float(ds @ moment[rows] ** 2)
+        wrong += float(ds @ (moment - held) ** 2)
+        stored += float(ds @ moment**2)
     return math.sqrt(wrong / stored)
 
 
@@ -349,17 +341,15 @@ def balance(points: Array, values: Array, where: tuple[Bezier, Array], reaction:
     return np.asarray(held)
 
 
-def _in_balance(system: System) -> list[tuple[slice, slice, slice, tuple[Array, Any], Array]]:
-    """Of each strip that is clamped at its root: rows in the table of points, places of its control points
-    and of the clamp's multipliers, basis there as ``balance`` takes it, and weight per du (3, 2) [N]."""
-    scene, found, at = system.scene, [], 0
-    for bending in scene.of(Bending):
+def _in_balance(system: System) -> list[tuple[int, slice, slice, tuple[Array, Any], Array]]:
+    """Of each strip that is clamped at its root: its number, places of its control points and of the clamp's
+    multipliers, basis as ``balance`` takes it, and weight per du (3, 2) [N]."""
+    scene, found = system.scene, []
+    for s, bending in enumerate(scene.of(Bending)):
         strip = scene.strip(bending.strip)
-        u = strip.basis.gauss_rule(bending.gauss_points)[0]
-        rows, clamp = slice(at, at + len(u)), scene.clamps.get((strip.name, "start"))
-        at = rows.stop
-        if clamp is not None and bending.flexural_rigidity != 0.0:
+        u, clamp = strip.basis.gauss_rule(bending.gauss_points)[0], scene.clamps.get((strip.name, "start"))
+        if clamp is not None:
             basis = strip.basis.evaluate(u), (strip.basis, u)
             points, load = system.layout.strip(strip.name), scene.weight_of(strip.name)
-            found.append((rows, points, clamp, basis, load))
+            found.append((s, points, clamp, basis, load))
     return found

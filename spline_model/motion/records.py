@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.motion.start import Motion
+from spline_model.paper import clamps_of
 from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns, kept
 
 Array = NDArray[np.float64]
@@ -25,20 +26,6 @@ MOST_GAIN = 1e-6
 """Largest gain of an energy-consistent run over its energy: a million steps stay below."""
 QUIET = 1e-6
 """Energies below this, in EI/L, are not told from this much: their gain is round-off."""
-
-
-def _clamp_gaps(motion: Motion, c: int, z: Array) -> Array:
-    """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m]."""
-    clamps = motion.system.clamps
-    (end, inner, body, _), (sign, bx, by, direction) = clamps.place[c], clamps.numbers[c]
-    pose = z[:, body : body + 3].T if body >= 0 else np.zeros((3, len(z)))
-    p, d = z[:, end : end + 2].T, sign * (z[:, inner : inner + 2] - z[:, end : end + 2]).T
-    along = direction + pose[2]
-    cos, sin, m = np.cos(pose[2]), np.sin(pose[2]), np.array((np.cos(along), np.sin(along)))
-    arm = np.array((cos * bx - sin * by, sin * bx + cos * by))
-    rest = motion.system.rest
-    reach = np.hypot(*(rest[inner : inner + 2] - rest[end : end + 2])) / np.hypot(*d)
-    return np.array((*(p - pose[:2] - arm), reach * (m[0] * d[1] - m[1] * d[0])))
 
 
 def energy_gain(rows: Array, unit: float) -> Array:
@@ -146,11 +133,12 @@ class Trajectory(Tabulated):
 
     @kept
     def constraint_residual(self) -> Array:
-        """Largest constraint residual (T,) [m]."""
-        largest = np.zeros(len(self.time))
-        for c in range(len(self.motion.system.clamps.place)):
-            largest = np.maximum(largest, np.abs(_clamp_gaps(self.motion, c, self.states)).max(axis=0))
-        return largest
+        """Largest constraint residual (T,) [m]: of ends, and of directions over the end's chord at rest."""
+        system = self.motion.system
+        clamps = clamps_of(system)
+        (points, (along, across)), (_, reach) = clamps.gaps(self.states), clamps.gaps(system.rest)
+        gaps = np.stack((*points, across * reach[0] / np.hypot(along, across)))
+        return np.asarray(np.abs(gaps).max(axis=(0, 2), initial=0.0))
 
     @cached_property
     def resolution(self) -> str:

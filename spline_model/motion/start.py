@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.bordered import assemble, evaluate
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import FOLLOWER, factor_at
+from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
 from spline_model.frames import carry, fold_tangent, spread
+from spline_model.paper import assemble, clamps_of, evaluate, room, strips_of
 from spline_model.solution import Later
 from spline_model.strip.compiled import part
-from spline_model.tables import ROW, DriveTable, LoadTable
+from spline_model.tables import DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -121,12 +121,12 @@ class Motion:
             return v, 0.0
         size, count = z.size, v.size
         gradient, hessian = np.empty(size), np.empty((size, size))
-        points, clamps = self.system.points, self.system.clamps
-        assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
+        strips, clamps = strips_of(self.system), clamps_of(self.system)
+        assemble(z, strips, clamps, gradient, hessian, room(strips))
         frames, arms = self.system.frames, np.zeros(size)
         carry(z, frames, arms)
         fold_tangent(hessian, 0.0, frames, arms, arms)
-        clamped = clamps.place[:, ROW, None] + np.arange(3)
+        clamped = clamps.row[:, None] + np.arange(3)
         rows = np.concatenate((clamped.ravel(), drives.row[held])).astype(int)
         hessian[drives.row, drives.coordinate] = -1.0
         jacobian = -hessian[rows][:, :count]
@@ -198,8 +198,7 @@ class Motion:
         parts = [factor_of(f, 0.0, loads) for f in range(len(loads.first))]
         if not parts:
             return self.system
-        loads = loads._replace(value=loads.value * parts)
-        return self.system.with_tables(acting=loads, loads=loads.rows(loads.turns != FOLLOWER))
+        return self.system.under(loads._replace(value=loads.value * parts))
 
     def require_material(self) -> None:
         """Check that the measure is the material one; only the leapfrog integrates another.
@@ -242,14 +241,10 @@ def set_in_motion(system: System) -> Motion:
 
 
 def axial_rigidity(system: System) -> Array:
-    """Return the inverse (K, K) [N] of the axial modes' compliance matrix, from the Hessian at rest."""
-    start, end, size = system.layout.coordinate_count, system.layout.multiplier_start, system.layout.size
-    gradient, hessian = np.empty(size), np.empty((size, size))
-    evaluate(system, system.rest, 0.0, gradient, hessian)
-    compliance = -hessian[start:end, start:end]
-    rigidity = np.zeros_like(compliance)
-    for (first, count), effect in zip(system.layout.modes, system.scene.of(MixedStretching), strict=True):
-        if effect.axial_compliance > 0:
-            block = slice(first - start, first - start + count)
-            rigidity[block, block] = np.linalg.inv(compliance[block, block])
+    """Return the inverse (M, M) [N/m] of the compliance of all axial forces; zero of those without any."""
+    strips, start = strips_of(system), system.layout.coordinate_count
+    rigidity = np.zeros((strips.axial.size * strips.modes.shape[1],) * 2)
+    for first, compliance in zip(strips.axial - start, strips.compliance, strict=True):
+        soft = np.flatnonzero(np.diag(compliance))
+        rigidity[np.ix_(first + soft, first + soft)] = np.linalg.inv(compliance[np.ix_(soft, soft)])
     return rigidity

@@ -14,9 +14,8 @@ from spline_model import (
     solve_motion,
     solve_statics,
 )
-from spline_model.bordered import evaluate
 from spline_model.compile import compile_scene
-from spline_model.quadrature import CURVATURE, STRAIN
+from spline_model.paper import CURVATURE, STRAIN, evaluate, strips_of
 from tests import gates
 from tests.models import rotation_matrix
 from tests.spline.scenes import PARAMETERS, drift, scene_with
@@ -161,9 +160,9 @@ class Operator:
     def __init__(self, settings):
         pivot = cross_axis_pivot(**(SIX | settings))
         system, generator = compile_scene(pivot.driven(0.8)), np.random.default_rng(7)
-        points = system.points._replace(numbers=system.points.numbers.copy())
-        points.numbers[:, [CURVATURE, STRAIN]] = 20.0, 0.01  # of strips that were bent and longer
-        self.system = system.with_tables(points=points)
+        strips = strips_of(system)  # as if they were bent and longer at rest
+        strips.along[..., CURVATURE], strips.own[:, STRAIN] = 20.0, 0.01
+        self.system = system
         self.unit, self.energy_unit = self.system.scales.unit, self.system.scales.energy
         noise = generator.uniform(-0.03, 0.03, self.system.layout.size)
         noise[self.system.layout.coordinate_count :] *= 30

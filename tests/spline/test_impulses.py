@@ -15,7 +15,7 @@ from spline_model import (
     solve_release,
 )
 from spline_model.compile import compile_scene
-from spline_model.impulses.arrays import SOLVES
+from spline_model.impulses import SOLVES
 from tests import gates
 from tests.spline.scenes import POLYMER, QUARTER, SECTION, pivot, stepper, total
 from tests.table_one import TABLE_ONE

@@ -1,1 +1,0 @@
-"""The kernels of the sequential impulse solver, compiled."""
