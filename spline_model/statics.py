@@ -25,7 +25,6 @@ from spline_model.legs import LOADS_FIRST, ORDERS, follow_legs, growing, turning
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
 from spline_model.path import Progress, follow_arc
-from spline_model.pivot import Pivot
 from spline_model.rigid import require_unborne
 from spline_model.static_answers import StaticSolution
 
@@ -38,12 +37,12 @@ METHODS = ("condensed", "multipliers")
 CONTROLS = ("load", "arc-length")
 
 
-def solve_statics(pivot: Pivot, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
+def solve_statics(pivot: Mechanism, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
     """Rotate the body of a pivot from 0 to `rotation` in equal increments.
 
     Parameters
     ----------
-    pivot : Pivot
+    pivot : Mechanism
     rotation : float or sequence of float, rad
         End of the path, or ends of several legs, one after the other.
     options

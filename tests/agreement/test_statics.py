@@ -110,14 +110,16 @@ def test_derived_data_agree():
         design = TABLE_ONE | change
         ours, theirs = spline_model.cross_axis_pivot(**design), fe_reference.cross_axis_pivot(**design)
         one, other = ours.design.strips[0], theirs.strips[0]
-        ends = np.diff(theirs.rest, axis=1)[:, [0, -1]]
+        points = np.array([(strip.start, strip.end) for strip in ours.design.strips])
+        along, ends = np.repeat(np.diff(points, axis=1), 2, axis=1), np.diff(theirs.rest, axis=1)[:, [0, -1]]
+        directions = (each / np.linalg.norm(each, axis=2, keepdims=True) for each in (along, ends))
         for mine, right in (
             (
                 derived(one, one.length, ours.design.bodies[0]),
                 derived(other, theirs.lengths[0], theirs.bodies[0]),
             ),
-            (ours.clamp_points, theirs.rest[:, [0, -1]]),
-            (ours.clamp_directions, ends / np.linalg.norm(ends, axis=2, keepdims=True)),
+            (points, theirs.rest[:, [0, -1]]),
+            directions,
         ):
             assert mine == pytest.approx(np.array(right), rel=1e-14, abs=1e-14)
 
