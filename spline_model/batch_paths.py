@@ -63,7 +63,7 @@ class Batch:
     inertia : (D, S) int
         Negative eigenvalues of the reduced tangent, 0 for a stable state, -1 after the end of a stopped path.
     moment_defect : (D, S) 1
-        As in ``spline_model.solution.Path``.
+        As in ``spline_model.static_answers.StaticSolution``.
     iterations, control_points : (D,) int
     accuracy : float, 1, or None
         For which control points were chosen; None for a given number.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,8 @@ from spline_model.effects.boundary import Sized
 from spline_model.errors import InvalidParameter
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
-from spline_model.solution import BY_STATE, Later, Path, Status, joined
+from spline_model.solution import Status
+from spline_model.static_answers import StaticSolution
 from spline_model.tables import LoadTable
 
 Array = NDArray[np.float64]
@@ -85,7 +86,7 @@ def turning(
 
 def follow_legs(
     legs: Sequence[_Leg], branch: str = "primary", method: str = "condensed", progress: Progress | None = None
-) -> Path:
+) -> StaticSolution:
     """Return the path through all legs, each from where the one before ends; branch and method as in
     ``follow``."""
     path, done, total = None, 0, sum(len(leg.factors) for leg in legs)
@@ -97,7 +98,7 @@ def follow_legs(
             branch = "primary"  # the branch was left, or there was none to follow
         if leg.steady is not None:
             part = _loaded(part, leg.steady)
-        path = part if path is None else _joined(path, part)
+        path = part if path is None else path.followed_by(part)
         if path.status is not Status.CONVERGED:
             break
         done += len(leg.factors)
@@ -110,24 +111,8 @@ def _tell(progress: Progress, done: int, total: int, increments: int, _: int) ->
     progress(min(done + increments, total), total)
 
 
-def _loaded(path: Path, loads: LoadTable) -> Path:
+def _loaded(path: StaticSolution, loads: LoadTable) -> StaticSolution:
     """A path along which loads act in full: its load factor is theirs, and their work is in its own."""
     moved = (path.states - path.states[0])[:, loads.coordinate] @ loads.value
     points = tuple(replace(point, load_factor=1.0) for point in path.critical_points)
     return replace(path, load_factor=np.ones(len(path.work)), work=path.work + moved, critical_points=points)
-
-
-def _joined(before: Path, after: Path) -> Path:
-    """Two parts of a path, the second begun where the first ends."""
-    both = before.rows(slice(None)), after.rows(slice(1, None))
-    parts: dict[str, Any] = {name: np.concatenate([rows[name] for rows in both]) for name in BY_STATE}
-    parts["work"][len(before.work) :] += before.work[-1]
-    parts["unknowns"] = Later(partial(joined, tuple(rows["unknowns"] for rows in both)))
-    return replace(
-        after,
-        message="; ".join(dict.fromkeys(m for m in (before.message, after.message) if m)),
-        critical_points=before.critical_points + after.critical_points,
-        counters={name: count + after.counters[name] for name, count in before.counters.items()},
-        history=before.history + after.history,
-        **parts,
-    )

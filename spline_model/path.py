@@ -21,7 +21,8 @@ from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import InvalidParameter, require_choice
 from spline_model.newton import Newton, solve
 from spline_model.reduced.elements import Elements, followed
-from spline_model.solution import Later, Path
+from spline_model.solution import Later
+from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 
@@ -39,7 +40,7 @@ def follow(
     start: Array | None = None,
     branch: str = "primary",
     method: str = "condensed",
-) -> Path:
+) -> StaticSolution:
     """Solve the scene at each load factor in turn, from rest at load factor 0.
 
     method: "condensed" uses the strips' elements, if they support the scene; "multipliers" the bordered
@@ -72,7 +73,7 @@ def follow_arc(
     branch: str = "primary",
     progress: Progress | None = None,
     method: str = "condensed",
-) -> Path:
+) -> StaticSolution:
     """Return the path from rest until its load factor is ``end`` [1].
 
     The first step changes the load factor by 1 / increments of the way; later ones adapt to the convergence
@@ -194,7 +195,7 @@ class _Track:
         except np.linalg.LinAlgError as error:
             raise InvalidParameter("scene", str(error), "strips that can move, but not freely") from error
 
-    def path(self, message: str) -> Path:
+    def path(self, message: str) -> StaticSolution:
         """What was followed, told what it is watched for."""
         rows = {name: self._rows(name) for name in self.pieces[0]}
         history = [*self.history, *([] if self.follower is None else self.follower.history)]
@@ -207,7 +208,7 @@ def _path(
     message: str,
     history: Sequence[tuple[float, ...]],
     given: Array | None = None,
-) -> Path:
+) -> StaticSolution:
     """The result from rows by state, and why it ended early; given: unknowns (N,) of the first state."""
     work, z = watch.work, rows.pop("z")
     known = (work.model, work.y(z)) if isinstance(work, Elements) else ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -14,6 +15,7 @@ from spline_model.accuracy import answered
 from spline_model.confirmed import Grid
 from spline_model.effects import Driven
 from spline_model.effects.base import Constraint, Load
+from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import (
     InvalidParameter,
     finite_numbers,
@@ -180,7 +182,14 @@ def solve_mechanism(
         laps.lap("solve")
         if not starts:
             require_unborne(system, path.reactions)
-        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
+        return replace(
+            path,
+            reactions=path.reactions[:, system.prescribed],
+            effects=tuple(name for name in given.effects if name not in MOTION_ONLY),
+            balanced=balanced,
+            asked=body,
+            seconds=laps.lap("recover"),
+        )
 
     way = 1.0 + abs(end) + sum(abs(b - a) for a, b in pairwise([0.0, *rotations]))
     total = len(rotations) or increments
