@@ -5,7 +5,7 @@ It begins at rest, weight and pre-strain grown from nothing, or at a state that 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -26,8 +26,6 @@ from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 
-Progress = Callable[[int, int], None]
-"""What is called with the increments done and the increments in all."""
 MOST_STEPS = 2000
 """Steps of an arc length."""
 
@@ -35,7 +33,6 @@ MOST_STEPS = 2000
 def follow(
     system: System,
     load_factors: Sequence[float],
-    progress: Progress | None = None,
     *,
     start: Array | None = None,
     branch: str = "primary",
@@ -58,7 +55,7 @@ def follow(
     require_choice("branch", branch, BRANCHES)
     work = followed(system, method)
     watch = Watch(work, leaves=branch == "follow", by_load=True)
-    track = _Track(watch, np.array([0.0, *load_factors]), progress)
+    track = _Track(watch, np.array([0.0, *load_factors]))
     message = track.begin(start)
     while track.states < len(track.factors) and not message:
         message = track.advance()
@@ -71,7 +68,6 @@ def follow_arc(
     *,
     increments: int = 20,
     branch: str = "primary",
-    progress: Progress | None = None,
     method: str = "condensed",
 ) -> StaticSolution:
     """Return the path from rest until its load factor is ``end`` [1].
@@ -89,12 +85,10 @@ def follow_arc(
     way = abs(end - point.load_factor) / increments
     follower, message = ArcFollower(watch, point, norms, end, way), ""
     follower.first = follower.step = min(LARGEST_STEP, follower.step)
-    for taken in range(MOST_STEPS):
+    for _ in range(MOST_STEPS):
         if follower.here.load_factor == end or message:
             break
         message = follower.go_on()
-        if progress is not None:
-            progress(taken + 1, MOST_STEPS)
     else:
         message = f"load factor {end:g} is not reached in {MOST_STEPS} steps"
     rows = watch.work.rows(follower.points, follower.done)
@@ -108,8 +102,8 @@ class _Track:
     of the first state, where they were given and are an equilibrium.
     """
 
-    def __init__(self, watch: Watch, factors: Array, progress: Progress | None) -> None:
-        self.watch, self.work, self.factors, self.progress = watch, watch.work, factors, progress
+    def __init__(self, watch: Watch, factors: Array) -> None:
+        self.watch, self.work, self.factors = watch, watch.work, factors
         self.pieces: list[dict[str, Any]] = []
         self.states, self.done = 0, 0.0
         self.follower: Follower | None = None
@@ -174,13 +168,10 @@ class _Track:
             self.follower = None
 
     def _keep(self, rows: dict[str, Any], done: float) -> None:
-        """More states, those of the increments told to the progress; done: work up to the last."""
+        """More states; done: work up to the last."""
         self.pieces.append(rows)
-        self.done, before = done, self.states
+        self.done = done
         self.states += len(rows["done"])
-        if self.progress is not None:
-            for state in range(max(before, 1), self.states):
-                self.progress(state, len(self.factors) - 1)
 
     def _rows(self, name: str) -> Array:
         """What is known by state, of that name."""
