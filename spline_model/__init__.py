@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from spline_model.mechanism import Mechanism as Mechanism
     from spline_model.mechanism import compliant_mechanism as compliant_mechanism
     from spline_model.modes import natural_frequencies as natural_frequencies
-    from spline_model.pivot import Pivot as Pivot
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
     from spline_model.section_forces import strip_fields as strip_fields
     from spline_model.sensitivity import sensitivities as sensitivities
@@ -49,7 +48,6 @@ _HOMES = {
     "HeldPivot": "held",
     "InvalidParameter": "errors",
     "Mechanism": "mechanism",
-    "Pivot": "pivot",
     "REGISTRY": "effects.registry",
     "Status": "solution",
     "StripDesign": "design",

@@ -31,7 +31,6 @@ from spline_model.confirmed import (
 from spline_model.design import Design
 from spline_model.discretisation import Discretisation
 from spline_model.errors import InvalidParameter, require_positive
-from spline_model.path import Progress
 from spline_model.solution import ErrorEstimate, Status, largest, named
 from spline_model.static_answers import StaticSolution
 
@@ -200,34 +199,25 @@ def search(
 def answered(
     design: Design,
     accuracy: float | None,
-    solve: Callable[[Grid, Progress | None, bool], StaticSolution],
-    progress: Progress | None,
-    increments: int,
+    solve: Callable[[Grid, bool], StaticSolution],
     way: float,
     check: bool = True,
 ) -> StaticSolution:
     """Return the path with the control points that an accuracy [1] needs; without one, those of the design.
 
-    solve: returns the answer of a discretisation, given the progress of its increments, and whether section
-    forces are by balance (as if paths with several numbers are compared). way: length of the path that is
+    solve: returns the answer of a discretisation, given whether section forces are by balance (as if paths
+    with several numbers are compared). way: length of the path that is
     asked for, as of ``_reach``. check: whether critical points and
     early ends of the design's own control points are compared with those of more.
     """
     chosen, grid = wanted(accuracy, design), design.discretisation
     own = grid.segments, grid.points
     if chosen is None and not check:
-        return solve(own, progress, False)
-
-    @cache
-    def outcome(trial: Grid) -> StaticSolution:
-        return solve(trial, progress if chosen is None and trial == own else None, chosen is not None)
-
+        return solve(own, False)
+    outcome = cache(lambda trial: solve(trial, chosen is not None))
     if chosen is None:
         return confirmed(outcome, own)
-    solution = _solve_accurately(design, chosen, outcome, way, DOUBTFUL if accuracy is None else None)
-    if progress is not None:
-        progress(increments, increments)
-    return solution
+    return _solve_accurately(design, chosen, outcome, way, DOUBTFUL if accuracy is None else None)
 
 
 def _solve_accurately(

@@ -15,9 +15,9 @@ from spline_model.batch_paths import Batch, Many
 from spline_model.confirmed import finer, relative
 from spline_model.discretisation import Described, Discretisation
 from spline_model.errors import InvalidParameter, require_choice, require_count
-from spline_model.legs import LOADS_FIRST, ORDERS
 from spline_model.mechanism import Mechanism
 from spline_model.parameters import Given, one_each, pivots, varied
+from spline_model.statics import LOADS_FIRST, ORDERS
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.errors import InvalidParameter
-from spline_model.legs import has_loads, steady
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.parameters import Given
@@ -23,6 +22,7 @@ from spline_model.reduced.numbers import Designs, along_of
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 from spline_model.solution import named, remark
+from spline_model.statics import has_loads, steady
 from spline_model.strip.element import Local
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ class Batch:
     inertia : (D, S) int
         Negative eigenvalues of the reduced tangent, 0 for a stable state, -1 after the end of a stopped path.
     moment_defect : (D, S) 1
-        As in ``spline_model.solution.Path``.
+        As in ``spline_model.static_answers.StaticSolution``.
     iterations, control_points : (D,) int
     accuracy : float, 1, or None
         For which control points were chosen; None for a given number.

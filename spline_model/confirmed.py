@@ -121,8 +121,7 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str
     whole = kept == len(answer.work) and answer.status is Status.CONVERGED
     message = f"not resolved with {named(*grid)}: {what}; {advice}"
     return replace(
-        answer,
-        **answer.rows(slice(kept)),
+        answer.rows(slice(kept)),
         status=Status.CONVERGED if whole else Status.NOT_CONVERGED,
         message=message,
         critical_points=answer.critical_points[:known],

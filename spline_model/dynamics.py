@@ -30,7 +30,6 @@ from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
-from spline_model.pivot import Pivot
 from spline_model.scene import Scene
 from spline_model.solution import Later, Status
 from spline_model.static_answers import StaticSolution
@@ -44,12 +43,12 @@ MOST_IN_MOTION = 14
 """Control points at which a motion that stops is given up, where their number is left open."""
 
 
-def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
+def solve_release(pivot: Mechanism, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
     """Release a pivot at rest from the static state at a rotation.
 
     Parameters
     ----------
-    pivot : Pivot
+    pivot : Mechanism
     start : float, rad, default pi/2
         Rotation at the release.
     options

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, Self, Unpack
 
@@ -37,7 +37,8 @@ class Mechanism:
     """A design, the names of its effects with their parameters, and its scene without a driven rotation.
 
     ``compliant_mechanism`` and ``spline_model.pivot.cross_axis_pivot`` return one. All values are in SI
-    units.
+    units. placing: the keywords of ``cross_axis_pivot`` that place its strips [m, rad, 1], empty of another
+    mechanism.
 
     Examples
     --------
@@ -51,6 +52,7 @@ class Mechanism:
     effects: tuple[str, ...]
     parameters: Parameters
     scene: Scene
+    placing: Mapping[str, float] = field(default_factory=dict)
 
     def with_discretisation(self, **changes: Any) -> Self:
         """Return the same mechanism with other keywords of ``Discretisation``; InvalidParameter as of this

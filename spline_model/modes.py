@@ -17,7 +17,6 @@ from spline_model.confirmed import Grid, at_limit
 from spline_model.effects import DrivenRotation
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.rigid import Unheld, props_of
@@ -151,7 +150,7 @@ def natural_frequencies(
     require_count("count", count, 1)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
-    if rotation is None and (held or isinstance(pivot, Pivot)):
+    if rotation is None and (held or pivot.placing):
         rotation = 0.0
     solve = partial(_modes, rotation=rotation, body=body, count=count, held=held, increments=increments)
     chosen = wanted(accuracy, pivot.design)

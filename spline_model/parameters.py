@@ -18,7 +18,7 @@ from spline_model.design import Design
 from spline_model.effects import Clamp
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
-from spline_model.pivot import Pivot, cross_axis_pivot, ends_at_rest, turned
+from spline_model.pivot import cross_axis_pivot, ends_at_rest, turned
 from spline_model.reduced.numbers import Numbers
 from spline_model.scene import Scene
 
@@ -147,8 +147,8 @@ class Given:
         Where both strips of a pivot change alike, its body goes along.
         """
         left = dict(columns)
-        if isinstance(asked, Pivot) and not left.keys().isdisjoint(PLACED):
-            shape: dict[str, Any] = dict(asked.shape)
+        if asked.placing and not left.keys().isdisjoint(PLACED):
+            shape: dict[str, Any] = dict(asked.placing)
             shape |= {name: left.pop(name) + own * shape[name] for name in PLACED if name in left}
             arm = self.centres - self.ends[:, None, :, 1].mean(axis=2)
             self.ends[...] = _ends(**shape)
@@ -185,7 +185,7 @@ def require_names(asked: Mechanism, names: Sequence[str], argument: str) -> None
 
     Raises InvalidParameter, which names the argument, for a name without one.
     """
-    shape = PLACED if isinstance(asked, Pivot) else ()
+    shape = PLACED if asked.placing else ()
     for name in names:
         if name not in shape and not _place_of(asked.design, name)[0]:
             one = f"STRIP.{', STRIP.'.join(POINTS)} of a straight strip or BODY.{', BODY.'.join(CENTRES)}"

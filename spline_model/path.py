@@ -5,7 +5,7 @@ It begins at rest, weight and pre-strain grown from nothing, or at a state that 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -21,12 +21,11 @@ from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import InvalidParameter, require_choice
 from spline_model.newton import Newton, solve
 from spline_model.reduced.elements import Elements, followed
-from spline_model.solution import Later, Path
+from spline_model.solution import Later
+from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 
-Progress = Callable[[int, int], None]
-"""What is called with the increments done and the increments in all."""
 MOST_STEPS = 2000
 """Steps of an arc length."""
 
@@ -34,12 +33,11 @@ MOST_STEPS = 2000
 def follow(
     system: System,
     load_factors: Sequence[float],
-    progress: Progress | None = None,
     *,
     start: Array | None = None,
     branch: str = "primary",
     method: str = "condensed",
-) -> Path:
+) -> StaticSolution:
     """Solve the scene at each load factor in turn, from rest at load factor 0.
 
     method: "condensed" uses the strips' elements, if they support the scene; "multipliers" the bordered
@@ -57,7 +55,7 @@ def follow(
     require_choice("branch", branch, BRANCHES)
     work = followed(system, method)
     watch = Watch(work, leaves=branch == "follow", by_load=True)
-    track = _Track(watch, np.array([0.0, *load_factors]), progress)
+    track = _Track(watch, np.array([0.0, *load_factors]))
     message = track.begin(start)
     while track.states < len(track.factors) and not message:
         message = track.advance()
@@ -70,9 +68,8 @@ def follow_arc(
     *,
     increments: int = 20,
     branch: str = "primary",
-    progress: Progress | None = None,
     method: str = "condensed",
-) -> Path:
+) -> StaticSolution:
     """Return the path from rest until its load factor is ``end`` [1].
 
     The first step changes the load factor by 1 / increments of the way; later ones adapt to the convergence
@@ -88,12 +85,10 @@ def follow_arc(
     way = abs(end - point.load_factor) / increments
     follower, message = ArcFollower(watch, point, norms, end, way), ""
     follower.first = follower.step = min(LARGEST_STEP, follower.step)
-    for taken in range(MOST_STEPS):
+    for _ in range(MOST_STEPS):
         if follower.here.load_factor == end or message:
             break
         message = follower.go_on()
-        if progress is not None:
-            progress(taken + 1, MOST_STEPS)
     else:
         message = f"load factor {end:g} is not reached in {MOST_STEPS} steps"
     rows = watch.work.rows(follower.points, follower.done)
@@ -107,8 +102,8 @@ class _Track:
     of the first state, where they were given and are an equilibrium.
     """
 
-    def __init__(self, watch: Watch, factors: Array, progress: Progress | None) -> None:
-        self.watch, self.work, self.factors, self.progress = watch, watch.work, factors, progress
+    def __init__(self, watch: Watch, factors: Array) -> None:
+        self.watch, self.work, self.factors = watch, watch.work, factors
         self.pieces: list[dict[str, Any]] = []
         self.states, self.done = 0, 0.0
         self.follower: Follower | None = None
@@ -173,13 +168,10 @@ class _Track:
             self.follower = None
 
     def _keep(self, rows: dict[str, Any], done: float) -> None:
-        """More states, those of the increments told to the progress; done: work up to the last."""
+        """More states; done: work up to the last."""
         self.pieces.append(rows)
-        self.done, before = done, self.states
+        self.done = done
         self.states += len(rows["done"])
-        if self.progress is not None:
-            for state in range(max(before, 1), self.states):
-                self.progress(state, len(self.factors) - 1)
 
     def _rows(self, name: str) -> Array:
         """What is known by state, of that name."""
@@ -194,7 +186,7 @@ class _Track:
         except np.linalg.LinAlgError as error:
             raise InvalidParameter("scene", str(error), "strips that can move, but not freely") from error
 
-    def path(self, message: str) -> Path:
+    def path(self, message: str) -> StaticSolution:
         """What was followed, told what it is watched for."""
         rows = {name: self._rows(name) for name in self.pieces[0]}
         history = [*self.history, *([] if self.follower is None else self.follower.history)]
@@ -207,7 +199,7 @@ def _path(
     message: str,
     history: Sequence[tuple[float, ...]],
     given: Array | None = None,
-) -> Path:
+) -> StaticSolution:
     """The result from rows by state, and why it ended early; given: unknowns (N,) of the first state."""
     work, z = watch.work, rows.pop("z")
     known = (work.model, work.y(z)) if isinstance(work, Elements) else ()

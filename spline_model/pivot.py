@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from spline_model.design import NOT_GIVEN, BodyDesign, StripDesign
 from spline_model.discretisation import Described
@@ -17,54 +17,6 @@ from spline_model.mechanism import Mechanism, compliant_mechanism
 
 BODY = "body"
 STRIPS = ("strip_1", "strip_2")
-
-
-class Pivot(Mechanism):
-    """A cross-axis pivot: a mechanism of two strips and one body; ``cross_axis_pivot`` returns one.
-
-    References
-    ----------
-    Valentini and Pezzuti (2013), Fig 1 and Table 1.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
-
-    >>> [strip.name for strip in pivot.design.strips]
-    ['strip_1', 'strip_2']
-    """
-
-    @property
-    def centre(self) -> NDArray[np.float64]:
-        """Centre of the body at rest (2,) [m]."""
-        return np.asarray(self.design.bodies[0].centre)
-
-    @property
-    def clamp_points(self) -> NDArray[np.float64]:
-        """Clamped points at rest (2, 2, 2) [strip, ground / body end, xy] [m]."""
-        return np.array([(strip.start, strip.end) for strip in self.design.strips])
-
-    @property
-    def clamp_directions(self) -> NDArray[np.float64]:
-        """Unit tangents at the clamped points at rest (2, 2, 2)."""
-        along = np.diff(self.clamp_points, axis=1)
-        return np.repeat(along / np.linalg.norm(along, axis=2, keepdims=True), 2, axis=1)
-
-    @property
-    def shape(self) -> dict[str, float]:
-        """The keywords of ``cross_axis_pivot`` that place its strips [m, rad, 1]."""
-        (ratio, length), (first, second) = self.crossing_reach, self.clamp_directions[:, 0]
-        low, high = math.atan2(first[1], first[0]), math.atan2(second[1], second[0])
-        inclination = (math.pi - (high - low) % (2.0 * math.pi)) / 2.0
-        shape = {"length": length, "inclination": inclination, "crossing_ratio": ratio}
-        return shape | {"orientation": low - inclination}
-
-    @property
-    def crossing_reach(self) -> tuple[float, float]:
-        """Crossing ratio r and the length L [m] of a pivot's strips: they cross at r L from the ground."""
-        apart = self.clamp_directions[0, 0] - self.clamp_directions[1, 0]
-        base, length = self.clamp_points[1, 0] - self.clamp_points[0, 0], self.design.strips[0].length
-        return float(base @ apart / (apart @ apart)) / length, length
 
 
 def cross_axis_pivot(
@@ -88,7 +40,7 @@ def cross_axis_pivot(
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Parameters | None = None,
     **described: Unpack[Described],
-) -> Pivot:
+) -> Mechanism:
     """Return the pivot of Table 1, or any other design.
 
     Parameters
@@ -121,7 +73,8 @@ def cross_axis_pivot(
 
     Returns
     -------
-    Pivot
+    Mechanism
+        Of two strips and one body.
 
     Raises
     ------
@@ -139,8 +92,8 @@ def cross_axis_pivot(
     ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0, body_mass=0.1,
     ...     body_moment_of_inertia=2e-5, control_points=6,
     ... )
-    >>> pivot.clamp_points.shape
-    (2, 2, 2)
+    >>> [strip.name for strip in pivot.design.strips]
+    ['strip_1', 'strip_2']
     """
     _check_shape(length, inclination, crossing_ratio, orientation)
     ends = ends_at_rest(length, inclination, crossing_ratio, orientation)
@@ -175,7 +128,13 @@ def cross_axis_pivot(
     made = compliant_mechanism(
         strips=strips, bodies=[body], effects=effects, parameters=parameters, **described
     )
-    return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)
+    placing = {
+        "length": length,
+        "inclination": inclination,
+        "crossing_ratio": crossing_ratio,
+        "orientation": orientation,
+    }
+    return replace(made, placing=placing)
 
 
 def ends_at_rest(

@@ -35,19 +35,17 @@ class Unheld(InvalidParameter):
 def props_of(scene: Scene) -> list[Constraint]:
     """Return the props where rigid motions are free, to stand behind all other constraints."""
     parts, props = loose(scene), []  # type: list[list[Body]], list[Constraint]
-    rows = [_row(scene, parts, drive.body, axis) for drive in scene.of(Driven) for axis in drive.parts]
+    rates = _rates(scene, parts)
+    rows = [rates[drive.body][axis] for drive in scene.of(Driven) for axis in drive.parts]
     for frame in (body for body in scene.bodies if body.on is not None):
-        for axis in range(2):
-            at = 0.0 if frame.on == GROUND else _row(scene, parts, str(frame.on), axis, frame.centre)
-            rows.append(_row(scene, parts, frame.name, axis) - at)
+        own, at = rates[frame.name], rates[str(frame.on)]
+        x, y = frame.centre if frame.on == GROUND else frame.centre - scene.body(str(frame.on)).centre
+        rows += [own[0] - at[0] + y * at[2], own[1] - at[1] - x * at[2]]
     for spring in scene.of(Spring):
-        for axis in range(3):
-            if spring.stiffness[axis] > 0.0:
-                other = 0.0 if spring.other is None else _row(scene, parts, spring.other, axis)
-                rows.append(_row(scene, parts, spring.body, axis) - other)
+        between = rates[spring.body] - rates[spring.other or GROUND]
+        rows += list(between[np.array(spring.stiffness) > 0.0])
     for body in (body for part in parts for body in part):
-        for axis in range(3):
-            row = _row(scene, parts, body.name, axis)
+        for axis, row in enumerate(rates[body.name]):
             if _rank([*rows, row]) > _rank(rows):
                 rows.append(row)
                 props.append(_prop(body.name, axis))
@@ -74,37 +72,28 @@ def require_unborne(system: System, reactions: Array) -> None:
 
 def loose(scene: Scene) -> list[list[Body]]:
     """Return the bodies that strips connect with each other but not with the ground, part by part."""
-    at = {name: name for name in (GROUND, *(body.name for body in scene.bodies))}
-
-    def root(name: str) -> str:
-        while at[name] != name:
-            name = at[name]
-        return name
-
-    ends: dict[str, list[str]] = {}
-    for clamp in scene.of(Constraint):
-        if isinstance(clamp, Clamp):
-            ends.setdefault(clamp.strip, []).append(clamp.to)
-    ends |= {body.name: [body.name, body.on] for body in scene.bodies if body.on and not body.turns}
-    for first, *others in ends.values():
-        for other in others:
-            at[root(other)] = root(first)
-    parts: dict[str, list[Body]] = {}
-    for body in scene.bodies:
-        parts.setdefault(root(body.name), []).append(body)
-    return [part for name, part in parts.items() if name != root(GROUND)]
+    links = {body.name: {body.name, body.on} for body in scene.bodies if body.on and not body.turns}
+    for clamp in scene.of(Clamp):
+        links.setdefault(clamp.strip, set()).add(clamp.to)
+    groups: list[set[str]] = [{GROUND}, *({body.name} for body in scene.bodies)]
+    for link in links.values():
+        joined = set().union(*(group for group in groups if group & link))
+        groups = [joined, *(group for group in groups if not group & link)]
+    parts = [[b for b in scene.bodies if b.name in group] for group in groups if GROUND not in group]
+    return sorted(parts, key=lambda part: scene.bodies.index(part[0]))
 
 
-def _row(scene: Scene, parts: list[list[Body]], name: str, axis: int, point: Array | None = None) -> Array:
-    """Rate of a coordinate of a body, or of a point of it, as each part moves and turns about its first body
-    (3 P,)."""
-    rates, at = np.zeros((len(parts), 3)), scene.body(name).centre if point is None else point
-    for rate, part in zip(rates, parts, strict=True):
-        if name in [body.name for body in part]:
-            x, y = (at - part[0].centre).tolist()
-            size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
-            rate[:] = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0 / size))[axis]
-    return rates.ravel()
+def _rates(scene: Scene, parts: list[list[Body]]) -> dict[str, Array]:
+    """Rates (3, 3 P) of the coordinates of the bodies, and of the ground, as each of P parts moves and turns
+    about its first body."""
+    rates = {name: np.zeros((3, 3 * len(parts))) for name in (GROUND, *(body.name for body in scene.bodies))}
+    for i, part in enumerate(parts):
+        size = max(math.dist(each.centre, part[0].centre) for each in part) or 1.0
+        for body in part:
+            x, y = (body.centre - part[0].centre).tolist()
+            turns = (1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0 / size)
+            rates[body.name][:, 3 * i : 3 * i + 3] = turns
+    return rates
 
 
 def _rank(rows: list[Array]) -> int:

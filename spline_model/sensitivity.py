@@ -14,7 +14,7 @@ from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.parameters import KEYWORDS, Given, require_names
-from spline_model.pivot import Pivot, turned
+from spline_model.pivot import turned
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.numbers import along_of
 from spline_model.reduced.states import products, section_forces, unknowns_of, whole_tangents
@@ -204,7 +204,7 @@ def _shifts(
     name = asked.design.body_named(body)
     place = [each.name for each in asked.design.bodies].index(name)
     pose, rest = unknowns[..., system.layout.body(name)], given.centres[:, None, place]
-    point = given.crossing[:, None] if isinstance(asked, Pivot) else rest
+    point = given.crossing[:, None] if asked.placing else rest
     x, y = np.moveaxis(point - rest, -1, 0)
     arm = np.stack(turned(x, y, pose[..., 2]), axis=-1)
     return {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property, partial, wraps
@@ -132,90 +132,17 @@ class Later:
         """Return some of its rows."""
         return Later(partial(_some, self, some), self.model, None if self.y is None else self.y[some])
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Path:
-    """An equilibrium path of S converged states, the unloaded state first.
-
-    Attributes
-    ----------
-    load_factor : (S,) 1
-    poses : (S, 3 B) m and rad
-        x, y, theta of the bodies.
-    reactions : (S, D) N and N m
-        Of the drives, as multipliers.
-    unknowns : (S, N) m, rad and N
-        z of all states.
-    stiffness : (S,) N m/rad
-        d(torque)/d(rotation) of a driven rotation at fixed loads; nan without one.
-    energies : (S, 2) J
-        Bending and axial energy.
-    work : (S,) J
-        Of loads and drives since the first state.
-    history : residual norms by increment, 1
-    inertia : (S,)
-        Negative eigenvalues of the reduced tangent with the drives held: 0 for a stable state, -1 if the
-        published forces have no potential.
-    moment_defect : (S,) 1
-        Relative deviation of the strips' moments from balance (``continuation.followed``).
-    critical_points : tuple of CriticalPoint
-        In the order of the path.
-    grown : float, 1
-        Share of weight and pre-strain that finds an equilibrium. Below 1, the only state of the path is the
-        shape at rest without them.
-    """
-
-    status: Status
-    message: str
-    load_factor: Array
-    poses: Array
-    reactions: Array
-    unknowns: Later
-    stiffness: Array
-    energies: Array
-    work: Array
-    inertia: NDArray[np.int64]
-    moment_defect: Array
-    critical_points: tuple[CriticalPoint, ...]
-    counters: dict[str, int]
-    history: tuple[tuple[float, ...], ...]
-    grown: float = 1.0
-
-    @property
-    def settled(self) -> bool:
-        """Whether the path begins under all of its weight and pre-strain."""
-        return self.grown == 1.0
-
-    @property
-    def states(self) -> Array:
-        """Unknowns z of all states (S, N) [m, rad, N]."""
-        return self.unknowns.array
-
-    def rows(self, kept: slice) -> dict[str, Any]:
-        """Return the arrays that it has by state, of some of them."""
-        by_state = {name: getattr(self, name)[kept] for name in BY_STATE}
-        return by_state | {"unknowns": self.unknowns.rows(kept)}
+    def followed_by(self, other: Later) -> Later:
+        """Return its rows and those of another one behind them."""
+        return Later(partial(_both, self, other))
 
 
-BY_STATE = (
-    "load_factor",
-    "poses",
-    "reactions",
-    "stiffness",
-    "energies",
-    "work",
-    "inertia",
-    "moment_defect",
-)
+def _some(own: Later, rows: slice) -> Array:
+    return own.array[rows]
 
 
-def _some(unknowns: Later, kept: slice) -> Array:
-    return unknowns.array[kept]
-
-
-def joined(parts: Sequence[Later]) -> Array:
-    """Return the rows (R, N) of several arrays [m, rad, N], one after another."""
-    return np.concatenate([part.array for part in parts])
+def _both(one: Later, other: Later) -> Array:
+    return np.concatenate((one.array, other.array))
 
 
 class Tabulated:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
@@ -11,18 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.newton import Laps
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import body_tangents
 from spline_model.scene import AXES
 from spline_model.sections import STATIONS, Sections, free_tips, reactions, sections
-from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
+from spline_model.solution import (
     CriticalPoint,
     ErrorEstimate,
     Later,
-    Path,
     Status,
     Tabulated,
     body_columns,
@@ -36,27 +33,60 @@ SINGULAR = 1e15
 """Condition of the rest, dimensionless, above which it does not follow."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class StaticSolution(Tabulated, Path):
-    """Static solution of a mechanism or pivot: S states, G strips, P stations.
+BY_STATE = (
+    "load_factor",
+    "poses",
+    "reactions",
+    "stiffness",
+    "energies",
+    "work",
+    "inertia",
+    "moment_defect",
+)
 
-    It is a ``spline_model.solution.Path``. Its load_factor (S,) is the share of the loads that acts [1],
-    negative if they act in the opposite direction. stiffness (S,) is d(torque)/d(rotation) [N m/rad] (Eq 20)
-    at fixed loads and driven displacements, from the tangent. Fields along the strips are computed at their
-    first access.
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class StaticSolution(Tabulated):
+    """Equilibrium path of a mechanism: S states, the unloaded one first, of G strips at P stations.
+
+    Fields along the strips are computed at their first access.
 
     Attributes
     ----------
     system : System
         The assembled equations.
-    balanced : bool
-        Whether section forces are by balance, see ``Sections``.
+    load_factor : (S,) 1
+        Share of the loads that acts, negative if they act in the opposite direction.
+    poses : (S, 3 B) m and rad
+        x, y, theta of the bodies.
+    reactions : (S, D) N and N m
+        Of the drives, as multipliers.
+    unknowns : (S, N) m, rad and N
+        z of all states.
+    stiffness : (S,) N m/rad
+        d(torque)/d(rotation) of a driven rotation (Eq 20) at fixed loads and driven displacements, from the
+        tangent; nan without one.
+    energies : (S, 2) J
+        Bending and axial energy.
+    work : (S,) J
+        Of loads and drives since the first state.
+    history : residual norms by increment, 1
+    inertia : (S,)
+        Negative eigenvalues of the reduced tangent with the drives held: 0 for a stable state, -1 if the
+        published forces have no potential.
+    moment_defect : (S,) 1
+        Relative deviation of the strips' moments from balance (``continuation.followed``).
+    critical_points : tuple of CriticalPoint
+        In the order of the path.
+    grown : float, 1
+        Share of weight and pre-strain that finds an equilibrium. Below 1, the only state of the path is the
+        shape at rest without them.
     effects : tuple of str
         Names of the assembled effects.
+    balanced : bool
+        Whether section forces are by balance, see ``Sections``.
     seconds : mapping of str to float, s
         By part, see ``spline_model.newton.Laps``.
-    control_points : int
-        Of a segment of a strip.
     estimate : ErrorEstimate or None
         Of the error, if control points were chosen for an accuracy.
     asked : str or None
@@ -64,40 +94,56 @@ class StaticSolution(Tabulated, Path):
     """
 
     system: System
-    balanced: bool
-    effects: tuple[str, ...]
-    seconds: dict[str, float]
-    control_points: int
+    status: Status
+    message: str
+    load_factor: Array
+    poses: Array
+    reactions: Array
+    unknowns: Later
+    stiffness: Array
+    energies: Array
+    work: Array
+    inertia: NDArray[np.int64]
+    moment_defect: Array
+    critical_points: tuple[CriticalPoint, ...]
+    counters: dict[str, int]
+    history: tuple[tuple[float, ...], ...]
+    grown: float = 1.0
+    effects: tuple[str, ...] = ()
+    balanced: bool = False
+    seconds: Mapping[str, float] = field(default_factory=dict)
     estimate: ErrorEstimate | None = None
     asked: str | None = None
 
-    @classmethod
-    def of(
-        cls,
-        system: System,
-        path: Path,
-        effects: Sequence[str],
-        laps: Laps,
-        *,
-        balanced: bool = False,
-        asked: str | None = None,
-    ) -> Self:
-        """The answer of a mechanism with these effects from its path; balanced: see ``Sections``; asked: the
-        body that was asked for."""
-        scene, known = system.scene, dict(vars(path))
-        if scene.turned:
-            points = (replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
-            known |= {"load_factor": np.abs(path.load_factor), "critical_points": tuple(points)}
-        if len(system.drives.row) != (scene.turned is not None):
-            known["reactions"] = path.reactions[:, system.prescribed]
-        return cls(
-            **known,
-            system=system,
-            balanced=balanced,
-            asked=asked,
-            effects=tuple(name for name in effects if name not in MOTION_ONLY),
-            control_points=max((strip.basis.control_points for strip in scene.strips), default=0),
-            seconds=laps.lap("recover"),
+    @property
+    def settled(self) -> bool:
+        """Whether the path begins under all of its weight and pre-strain."""
+        return self.grown == 1.0
+
+    @property
+    def states(self) -> Array:
+        """Unknowns z of all states (S, N) [m, rad, N]."""
+        return self.unknowns.array
+
+    def rows(self, kept: slice) -> Self:
+        """Return the path of some of its states."""
+        by_state = {name: getattr(self, name)[kept] for name in BY_STATE}
+        return replace(self, unknowns=self.unknowns.rows(kept), **by_state)
+
+    def followed_by(self, after: Self) -> Self:
+        """Return this path and one that begins where it ends."""
+        onward = after.rows(slice(1, None))
+        by_state = {name: np.append(getattr(self, name), getattr(onward, name), axis=0) for name in BY_STATE}
+        by_state["work"][len(self.work) :] += self.work[-1]
+        return replace(
+            after,
+            system=self.system,
+            message="; ".join(dict.fromkeys(m for m in (self.message, after.message) if m)),
+            critical_points=self.critical_points + after.critical_points,
+            counters={name: count + after.counters[name] for name, count in self.counters.items()},
+            history=self.history + after.history,
+            unknowns=self.unknowns.followed_by(onward.unknowns),
+            **by_state,
         )
 
     def checked(self, raise_on_failure: bool) -> Self:
@@ -106,6 +152,11 @@ class StaticSolution(Tabulated, Path):
             reached = float(self.load_factor[-1])
             raise ConvergenceError(self.message, solution=self, load_factor=reached, history=self.history)
         return self
+
+    @property
+    def control_points(self) -> int:
+        """Control points of a segment of a strip."""
+        return max((strip.basis.control_points for strip in self.system.scene.strips), default=0)
 
     @property
     def segments(self) -> int:

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
+from spline_model.compile import System, compile_scene
 from spline_model.confirmed import Grid
 from spline_model.effects import Driven
 from spline_model.effects.base import Constraint, Load
+from spline_model.effects.boundary import Sized
+from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import (
     InvalidParameter,
     finite_numbers,
@@ -21,29 +25,31 @@ from spline_model.errors import (
     require_count,
     require_finite,
 )
-from spline_model.legs import LOADS_FIRST, ORDERS, follow_legs, growing, turning
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
-from spline_model.path import Progress, follow_arc
-from spline_model.pivot import Pivot
+from spline_model.path import follow, follow_arc
 from spline_model.rigid import require_unborne
+from spline_model.scene import Scene
+from spline_model.solution import Status
 from spline_model.static_answers import StaticSolution
+from spline_model.tables import LoadTable
 
 Array = NDArray[np.float64]
 
 LEAST_ROTATION = 1e-12
 """Largest rotation of a path that is none [rad]: states are solved to 1e-11."""
 
+LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 METHODS = ("condensed", "multipliers")
 CONTROLS = ("load", "arc-length")
 
 
-def solve_statics(pivot: Pivot, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
+def solve_statics(pivot: Mechanism, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
     """Rotate the body of a pivot from 0 to `rotation` in equal increments.
 
     Parameters
     ----------
-    pivot : Pivot
+    pivot : Mechanism
     rotation : float or sequence of float, rad
         End of the path, or ends of several legs, one after the other.
     options
@@ -92,7 +98,6 @@ def solve_mechanism(
     starts: bool = False,
     check: bool = True,
     raise_on_failure: bool = True,
-    progress: Progress | None = None,
 ) -> StaticSolution:
     """Solve a mechanism from rest to load factor 1: its loads and drives grow in proportion.
 
@@ -130,8 +135,6 @@ def solve_mechanism(
         Confirm critical points and an early end by more control points (``spline_model.confirmed``).
     raise_on_failure : bool, default True
         Raise an error for a path that ends early, or return it with its status.
-    progress : callable, default None
-        Called as progress(done, total).
 
     Returns
     -------
@@ -165,28 +168,33 @@ def solve_mechanism(
     laps, turned = Laps(), rotation is not None and control == "load" and end == 1.0
     rotations = [] if rotation is None else _rotations(rotation, increments)
 
-    def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
+    def solve(grid: Grid, balanced: bool) -> StaticSolution:
         given = mechanism.on(*grid).propped(rotation is not None, body)
         if turned:
-            legs = turning(partial(given.system, body=body), rotations, increments, order)
+            legs = _turning(partial(given.system, body=body), rotations, increments, order)
         else:
             driven = rotations[-1] if rotations else None
-            legs = [growing(given.system(driven, body), increments, end)]
+            legs = [_growing(given.system(driven, body), increments, end)]
         system = legs[0].system
         laps.lap("compile")
         if control == "arc-length":
-            path = follow_arc(system, end, increments=increments, branch=branch, progress=told, method=method)
+            path = follow_arc(system, end, increments=increments, branch=branch, method=method)
         else:
-            path = follow_legs(legs, branch, method, told)
+            path = _follow(legs, branch, method)
         laps.lap("solve")
         if not starts:
             require_unborne(system, path.reactions)
-        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
+        return replace(
+            path,
+            reactions=path.reactions[:, system.prescribed],
+            effects=tuple(name for name in given.effects if name not in MOTION_ONLY),
+            balanced=balanced,
+            asked=body,
+            seconds=laps.lap("recover"),
+        )
 
     way = 1.0 + abs(end) + sum(abs(b - a) for a, b in pairwise([0.0, *rotations]))
-    total = len(rotations) or increments
-    solution = answered(mechanism.design, accuracy, solve, progress, total, way, check)
-    return solution.checked(raise_on_failure)
+    return answered(mechanism.design, accuracy, solve, way, check).checked(raise_on_failure)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int) -> list[float]:
@@ -197,6 +205,89 @@ def _rotations(rotation: float | Sequence[float], increments: int) -> list[float
     if 0.0 < largest < LEAST_ROTATION or any(0.0 < abs(b - a) < LEAST_ROTATION for a, b in legs):
         raise InvalidParameter("rotation", rotation, f"0, or legs of {LEAST_ROTATION:g} [rad] or more")
     return [b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]]
+
+
+class _Leg(NamedTuple):
+    """A part of a path: a system that is followed through load factors.
+
+    steady: loads that act in full all along it, whatever its own load factor.
+    """
+
+    system: System
+    factors: list[float]
+    steady: LoadTable | None = None
+
+
+def has_loads(scene: Scene) -> bool:
+    """Whether loads act that may come on first: beside a driven displacement all grow together."""
+    return bool(scene.of(Load)) and not any(drive.moves for drive in scene.of(Driven) if drive.beside)
+
+
+def steady(scene: Scene) -> Scene:
+    """Return the scene with loads and driven displacements in full at any load factor."""
+    effects = (
+        replace(e, steady=True) if isinstance(e, Sized) or (isinstance(e, Driven) and e.beside) else e
+        for e in scene.effects
+    )
+    return replace(scene, effects=tuple(effects))
+
+
+def _growing(system: System, increments: int, end: float = 1.0) -> _Leg:
+    """Return the leg on which all loads and drives of a system grow from 0 to the load factor ``end`` [1]."""
+    return _Leg(system, np.linspace(0.0, end, increments + 1)[1:].tolist())
+
+
+def _turning(
+    driven: Callable[[float], System], rotations: Sequence[float], increments: int, order: str
+) -> list[_Leg]:
+    """Return the legs of a body that is turned through R rotations [rad] under the loads of its scene.
+
+    driven: the system that is driven to a rotation; increments: those of the loads where they come on first.
+    Without any rotation loads grow from 0 to 1.
+
+    Raises
+    ------
+    InvalidParameter
+        Rotations to both sides, while loads or displacements grow with their size.
+    """
+    largest = max(rotations, key=abs)
+    if largest == 0.0:
+        return [_growing(driven(0.0), len(rotations))]
+    whole, factors = driven(largest), [rotation / largest for rotation in rotations]
+    if order == LOADS_FIRST and has_loads(whole.scene):
+        first = _growing(driven(0.0), increments)
+        return [first, _Leg(compile_scene(steady(whole.scene)), factors, steady=first.system.loads)]
+    grows = whole.acting.value.any() or np.count_nonzero(whole.drives.target) > 1
+    if grows and min(factors) < 0.0:
+        told = [round(end, 6) for end in (min(rotations), max(rotations))]
+        expected = "turns to one side of rest [rad], with which loads and displacements grow"
+        raise InvalidParameter("rotation", told, expected)
+    return [_Leg(whole, factors)]
+
+
+def _follow(legs: Sequence[_Leg], branch: str, method: str) -> StaticSolution:
+    """Return the path through all legs, each from where the one before ends; branch and method as in
+    ``follow``."""
+    path = None
+    for leg in legs:
+        start = None if path is None else path.states[-1]
+        part = follow(leg.system, leg.factors, start=start, branch=branch, method=method)
+        if part.critical_points:
+            branch = "primary"  # the branch was left, or there was none to follow
+        if leg.steady is not None:
+            part = _loaded(part, leg.steady)
+        path = part if path is None else path.followed_by(part)
+        if path.status is not Status.CONVERGED:
+            break
+    assert path is not None, "there is a leg"
+    return path
+
+
+def _loaded(path: StaticSolution, loads: LoadTable) -> StaticSolution:
+    """A path along which loads act in full: its load factor is theirs, and their work is in its own."""
+    moved = (path.states - path.states[0])[:, loads.coordinate] @ loads.value
+    points = tuple(replace(point, load_factor=1.0) for point in path.critical_points)
+    return replace(path, load_factor=np.ones(len(path.work)), work=path.work + moved, critical_points=points)
 
 
 def static_state(

@@ -86,7 +86,7 @@ def opposed(models=spline_model, *, offset=0.01, **discretisation):
     """A body on two parallel strips of Table 1's section that come from opposite sides, 0.1 m long.
 
     Turned clockwise, both strips are pushed together alike: half a turn maps the pivot onto
-    itself, until the strips buckle and the body gives way. Of splines as a pivot.
+    itself, until the strips buckle and the body gives way.
     """
     half = 0.05
     ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
@@ -95,9 +95,4 @@ def opposed(models=spline_model, *, offset=0.01, **discretisation):
         for i, (start, end) in enumerate(ends, start=1)
     ]
     body = models.BodyDesign(name="body", centre=(0.0, 0.0))
-    made = models.compliant_mechanism(strips=strips, bodies=[body], effects=STATIC, **discretisation)
-    if models is not spline_model:
-        return made
-    return spline_model.Pivot(
-        design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene
-    )
+    return models.compliant_mechanism(strips=strips, bodies=[body], effects=STATIC, **discretisation)

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.continuation.followed import Point
-from spline_model.continuation.points import BIFURCATION, corrected, directed, reached
+from spline_model.continuation.points import BIFURCATION, corrected, directed, hermite, reached
 from spline_model.continuation.watch import Watch, place
 from spline_model.newton import Newton, correct, solve
 from spline_model.solution import CriticalPoint
@@ -66,7 +65,7 @@ class Follower:
 
     def _predict(self, aim: float) -> tuple[Array, float]:
         """The state where the parameter is ``aim``, by the last states and rates, and its load factor."""
-        return _hermite_extrapolation([(at, p.z, p.rate) for at, p in self._near(aim)], aim), aim
+        return hermite([(at, p.z, p.rate) for at, p in self._near(aim)], aim), aim
 
     def _near(self, aim: float) -> list[tuple[float, Point]]:
         """The states to extrapolate; further than twice their distance, the tangent only."""
@@ -153,27 +152,6 @@ class Follower:
         return f"stopped between {place(self.work, aim, last=self.here.load_factor)}: {reason}"
 
 
-def _hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
-    """Return the polynomial (N,) through (place, value, slope) triples, evaluated at a place; any units.
-
-    Newton's divided differences with every node doubled: degree 2 k - 1 for k triples. Three of them halve
-    the Newton iterations of a smooth path compared with two.
-    """
-    nodes = [place for place, _, _ in known for _ in range(2)]
-    table = [value for _, value, _ in known for _ in range(2)]
-    result, weight = table[0], 1.0
-    for order in range(1, len(nodes)):
-        weight = weight * (at - nodes[order - 1])
-        table = [
-            known[i // 2][2]
-            if nodes[i + order] == nodes[i]
-            else (table[i + 1] - table[i]) / (nodes[i + order] - nodes[i])
-            for i in range(len(nodes) - order)
-        ]
-        result = result + weight * table[0]
-    return np.asarray(result)
-
-
 class ArcFollower(Follower):
     """The same in the arc length towards a load factor ``end``, in steps that follow the ease of the path.
 
@@ -216,8 +194,7 @@ class ArcFollower(Follower):
     def _predict(self, aim: float) -> tuple[Array, float]:
         """The state where the arc length is ``aim``, or at the end of the path where that is beyond it."""
         z, here = super()._predict(aim)[0], self.here
-        factors = [(at, np.array(p.load_factor), np.array(p.slope)) for at, p in self._near(aim)]
-        load_factor = float(_hermite_extrapolation(factors, aim))
+        load_factor = hermite([(at, p.load_factor, p.slope) for at, p in self._near(aim)], aim)
         if (self.end - here.load_factor) * (self.end - load_factor) <= 0.0:
             share = (self.end - here.load_factor) / (load_factor - here.load_factor)
             return here.z + share * (z - here.z), self.end

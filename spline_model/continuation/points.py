@@ -6,8 +6,9 @@ energy gained between them against the work done.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -168,10 +169,10 @@ def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float
     step.
     """
     a, b, t = before, after, NODES
-    conjugate = _hermite(a.conjugate, b.conjugate, step * a.conjugate_rate, step * b.conjugate_rate, t)
+    ends = ((0.0, a.conjugate, step * a.conjugate_rate), (1.0, b.conjugate, step * b.conjugate_rate))
     slope = 6 * t * (1 - t) * (b.load_factor - a.load_factor)
     slope += step * (a.slope * (1 - t) * (1 - 3 * t) - b.slope * t * (2 - 3 * t))
-    parts = conjugate * slope
+    parts = hermite(ends, t) * slope
     done, gained = float(WEIGHTS @ parts), after.potential - before.potential
     scale = max(abs(gained), float(WEIGHTS @ np.abs(parts)))
     floor = ROUND_OFF * (unit + sum(map(abs, after.energies)))
@@ -180,13 +181,19 @@ def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float
     return done, ""
 
 
-def _hermite(
-    a: Array | float, b: Array | float, slope_a: Array | float, slope_b: Array | float, t: Array | float
-) -> Array:
-    """Return Hermite's cubic (...) between two values (...) with slopes on the unit interval, in their
-    unit."""
-    value = a * ((1 + 2 * t) * (1 - t) ** 2) + b * (t**2 * (3 - 2 * t))
-    return np.asarray(value + slope_a * (t * (1 - t) ** 2) - slope_b * (t**2 * (1 - t)))
+def hermite(known: Sequence[tuple[float, Any, Any]], at: Any) -> Any:
+    """Return Hermite's polynomial through (place, value, slope) triples at a place or places, in their units.
+
+    It is of degree 2 k - 1 for k triples.
+    """
+    total = 0.0
+    for i, (place, value, slope) in enumerate(known):
+        share, lean = 1.0, 0.0
+        for other in (each[0] for j, each in enumerate(known) if j != i):
+            share = share * ((at - other) / (place - other)) ** 2
+            lean += 2.0 / (place - other)
+        total = total + share * ((1.0 - (at - place) * lean) * value + (at - place) * slope)
+    return total
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -213,8 +220,8 @@ class _Bracket:
         It is sought on a plane across the path: normal to the chord, or to the load factor.
         """
         a, b, step = self.before, self.after, self.step
-        z = _hermite(a.z, b.z, step * a.rate, step * b.rate, t)
-        factor = _hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
+        z = hermite(((0.0, a.z, step * a.rate), (1.0, b.z, step * b.rate)), t)
+        factor = hermite(((0.0, a.load_factor, step * a.slope), (1.0, b.load_factor, step * b.slope)), t)
         normal, along = np.zeros_like(z), 1.0
         if not a.slope == b.slope == 1.0:
             normal, along = (b.z - a.z) / self.work.unit, b.load_factor - a.load_factor
@@ -304,9 +311,8 @@ def _sense(system: System, moved: Array) -> float:
 
 
 def _where_zero(bracket: _Bracket, value: Callable[[Point], float]) -> Point | None:
-    """The state where a value goes through zero: inverse quadratic interpolation, or bisection where the last
-    three values are not those of a smooth monotonic function, as at a kink of the softest eigenvalue
-    (Chandrupatla, Advances in Engineering Software 28 (1997) 145-149).
+    """The state where a value goes through zero, by secants whose older end is weighed down while it stays
+    (Anderson and Bjoerck, BIT 13 (1973) 253-264).
 
     None where it is not found, or where the sign changes in a jump: then there is no zero.
     """
@@ -315,31 +321,26 @@ def _where_zero(bracket: _Bracket, value: Callable[[Point], float]) -> Point | N
         point = bracket.at(t)
         return np.nan if point is None else value(point)
 
-    a, b, fa, fb = 1.0, 0.0, at(1.0), at(0.0)
+    a, b, fa, fb = 0.0, 1.0, at(0.0), at(1.0)
     if not fa * fb < 0.0:
         return None
-    small, nothing = (part * min(abs(fa), abs(fb)) for part in (FINE, JUMP))
-    share, failed = 0.5, False
-    while abs(b - a) >= FINE and min(abs(fa), abs(fb)) > small:
-        t = a + share * (b - a)
+    least, nearest = min((abs(fa), a), (abs(fb), b))
+    small, nothing = FINE * least, JUMP * least
+    while abs(b - a) >= FINE and least > small:
+        t = min(max(b - fb * (b - a) / (fb - fa), min(a, b) + 0.5 * FINE), max(a, b) - 0.5 * FINE)
         ft = at(t)
         if not np.isfinite(ft):  # close to the point Newton may fail: elsewhere, or the nearer end
-            if failed or share == 0.5:
-                break
-            share, failed = 0.5, True
-            continue
-        failed = False
-        c, fc = a, fa
-        if ft * fa < 0.0:
-            c, fc, b, fb = b, fb, a, fa
-        a, fa = t, ft
-        place, height = (a - b) / (c - b), (fa - fb) / (fc - fb)
-        share = 0.5
-        if height**2 < place and (1.0 - height) ** 2 < 1.0 - place:
-            share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-            share = min(max(share, FINE), 1.0 - FINE)
-    t, least = (a, abs(fa)) if abs(fa) < abs(fb) else (b, abs(fb))
-    return bracket.at(t) if least <= nothing else None
+            t = 0.5 * (a + b)
+            ft = at(t)
+        if not np.isfinite(ft):
+            break
+        least, nearest = min((least, nearest), (abs(ft), t))
+        if ft * fb < 0.0:
+            a, fa = b, fb
+        else:
+            fa *= 1.0 - ft / fb if abs(ft) < abs(fb) else 0.5
+        b, fb = t, ft
+    return bracket.at(nearest) if least <= nothing else None
 
 
 def _eigenpair(work: Followed, number: int) -> tuple[float, Array]:

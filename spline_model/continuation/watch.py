@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,8 @@ from spline_model.continuation.points import BIFURCATION, LIMIT, Crossing, betwe
 from spline_model.effects import AppliedForce, AppliedMoment, Driven, DrivenRotation
 from spline_model.effects.base import Load
 from spline_model.newton import correct
-from spline_model.solution import CriticalPoint, Path, Status
+from spline_model.solution import CriticalPoint, Status
+from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 
@@ -108,21 +110,27 @@ class Watch:
             said.append("the last state is unstable: it buckles unless it is held")
         return "; ".join(filter(None, said))
 
-    def path(self, rows: dict[str, Any], message: str, history: Sequence[tuple[float, ...]]) -> Path:
+    def path(
+        self, rows: dict[str, Any], message: str, history: Sequence[tuple[float, ...]]
+    ) -> StaticSolution:
         """The result: what was followed, by state, ``done`` among it, int P_lambda d(lambda) from the first
         [J]; why it ended early, if it did."""
-        system, work = self.work.system, rows.pop("done")
+        system, work, critical = self.work.system, rows.pop("done"), (*self.settled, *self.critical)
         if (loads := system.loads).value.size:
             moved = (rows["unknowns"].array - system.rest)[:, loads.coordinate]
             work = rows["load_factor"] * (moved @ loads.value) + work
         if system.followers.place.size:  # with drives and loads they do what is stored
             moved = (rows["unknowns"].array - system.rest)[:, : system.weight.size]
             work = rows["energies"].sum(axis=1) + system.spring_energy(rows["poses"]) - moved @ system.weight
-        return Path(
+        if system.scene.turned:  # to whichever side the body turns
+            rows["load_factor"] = np.abs(rows["load_factor"])
+            critical = tuple(replace(point, load_factor=abs(point.load_factor)) for point in critical)
+        return StaticSolution(
+            system=system,
             status=Status.NOT_CONVERGED if message else Status.CONVERGED,
             message=message or self.remark(int(rows["inertia"][-1])),
             work=work - work[0],
-            critical_points=(*self.settled, *self.critical),
+            critical_points=critical,
             counters=dict(vars(self.work.counters)),
             history=tuple(history),
             grown=self.grown,

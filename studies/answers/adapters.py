@@ -38,16 +38,18 @@ def answer_static(
         accuracy: wanted error of trajectory and torque [1], which control points or elements are raised for;
             None for those of the settings.
         repeat: timed solves of the whole path [1].
-        progress: called with increments done and increments in all.
+        progress: called with increments done and increments in all, by the elements.
 
     Raises:
         BadInput: a setting that the model refuses; one line.
     """
-    wanted = {} if accuracy is None else {"accuracy": accuracy}
+    wanted: dict[str, Any] = {} if accuracy is None else {"accuracy": accuracy}
+    if isinstance(settings, FeSettings):
+        wanted["progress"] = progress
 
     def answer() -> Response:
         asked = put(design, settings)
-        path = asked.static_path(raise_on_failure=False, progress=progress, **wanted)
+        path = asked.static_path(raise_on_failure=False, **wanted)
         return Response.of(asked, path, solve_s=float(path.seconds["solve"]))
 
     timing = measure(answer, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=lambda each: each.solve_s)

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from spline_model.pivot import Pivot
+from spline_model.mechanism import Mechanism
 from spline_model.sequential_impulse import solve_impulses, stability_limit
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
@@ -59,7 +59,7 @@ def _limit(design: str, group: str) -> Answer:
 
     Columns: predicted_s = 2 / omega of the highest frequency at rest, measured_s, ratio.
     """
-    pivot: Pivot = put(_designs()[design], GROUPS[group], moving=True).modelled
+    pivot: Mechanism = put(_designs()[design], GROUPS[group], moving=True).modelled
     predicted = stability_limit(pivot)
     how: dict[str, Any] = {"start": SMALL, "form": "published", "records": 1}
     low, high = 0.0, 1.5

@@ -108,7 +108,7 @@ def test_states_of_another_design_are_refused():
     splines = spline_model.cross_axis_pivot(**SIX)
     with pytest.raises(spline_model.InvalidParameter, match=r"states: got .*control points"):
         spline_model.strip_fields(splines, np.zeros((1, 5)))
-    with pytest.raises(BadInput, match="got StaticSolution and Pivot, expected"):
+    with pytest.raises(BadInput, match="got StaticSolution and Mechanism, expected"):
         studies.plot(path, splines)
 
 
