@@ -19,7 +19,6 @@ from spline_model.reduced.numbers import (
     Designs,
     Ends,
     Numbers,
-    along_of,
     arrays_of,
     shape_at,
     shape_of,
@@ -118,9 +117,13 @@ class Reduced:
         """Bodies at the strips' ends."""
         return Ends(self.strips.roots, self.strips.tips)
 
-    def designs(self, given: Numbers, length: Array, energy: Array) -> Designs:
-        """Return the arrays of D designs of the scene, over lengths (D,) [m] and energies (D,) [J]."""
-        return arrays_of(self.system, self.shape, self.ends, given, length, energy)
+    def designs(self, given: Numbers, length: Array, energy: Array, gauss: Shape | None = None) -> Designs:
+        """Return the arrays of D designs of the scene, over lengths (D,) [m] and energies (D,) [J].
+
+        gauss: the Gauss points, of a model at stations.
+        """
+        own = self.shape
+        return arrays_of(self.system, own, own if gauss is None else gauss, self.ends, given, length, energy)
 
     def arrays(self) -> Arrays:
         """What kernels know of it, with working arrays of their own."""
@@ -134,10 +137,9 @@ class Reduced:
     def at_stations(self, stations: Array) -> Reduced:
         """Return the same with stations u (P,) [1] for Gauss points, where sections are recovered."""
         shape = shape_at(self.system.scene.strips[0].basis, stations, np.zeros(len(stations)))
-        length, energy = np.array([self.length]), np.array([self.energy])
-        own = Numbers.of(self.system.scene).over(length)
-        along, rest, _ = along_of(self.system, shape, self.shape, own, length, energy)
-        return replace(self, shape=shape, strips=self.strips._replace(along=along[0]), rest=rest[0])
+        units, at = (np.array([self.length]), np.array([self.energy])), replace(self, shape=shape)
+        own = at.designs(Numbers.of(self.system.scene), *units, gauss=self.shape)
+        return replace(at, strips=self.strips._replace(along=own.along[0]), rest=own.rest[0])
 
 
 def reduced(system: System) -> Reduced | None:
@@ -168,7 +170,7 @@ def _reduced(system: System) -> Reduced | None:
     basis, bending = scene.strips[0].basis, scene.of(Bending)[0]
     length, energy = system.scales.length, system.scales.energy
     shape, ends = shape_of(basis, bending.gauss_points), Ends.of(scene)
-    own = arrays_of(system, shape, ends, Numbers.of(scene), np.array([length]), np.array([energy]))
+    own = arrays_of(system, shape, shape, ends, Numbers.of(scene), np.array([length]), np.array([energy]))
     first, c = scene.strips[0].name, own.compliance[0]
     mixed = (e.modes for e in scene.of(MixedStretching) if e.strip == first)
     split = sum(modes.count for modes in mixed if not isinstance(modes, SlideModes))
