@@ -180,15 +180,9 @@ def arrays_of(
         (count, strips, modes),
         (count, 3 * bodies + strips * (2 * n - 6 + modes)),
     )
-    own = Designs(
-        length,
-        energy,
-        *(np.empty(each, dtype=kind) for each in shapes),
-        force=np.empty((count, *common.force.shape)),
-        target=np.empty((count, len(common.target))),
-        springs=np.empty((count, *common.springs.shape)),
-        levers=np.zeros((count, len(common.frames), 2), dtype=kind),
-    )
+    filled = [np.empty(each, dtype=kind) for each in shapes]
+    filled += [np.empty((count, *each.shape)) for each in (common.force, common.target, common.springs)]
+    own = Designs(length, energy, *filled, np.empty((count, len(common.frames), 2), dtype=kind))
     _fill(given, common, ends, shape, gauss, own)
     return own
 
@@ -199,7 +193,7 @@ def _common_of(system: System, shape: Shape, gauss: Shape, given: Numbers) -> _C
     parts: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
     for effect in scene.of(MixedStretching):
         parts[effect.strip].append(effect)
-    bends, stretches = ({e.strip: e for e in scene.of(kind)} for kind in (Bending, Stretching))
+    bends, stretches = {e.strip: e for e in scene.of(Bending)}, {e.strip: e for e in scene.of(Stretching)}
     kinds = [e.modes for e in parts[scene.strips[0].name]]
     modes = _values(tuple(kinds), u.tobytes())
     along = np.zeros((1, len(parts), len(u), MODES + modes.shape[1]))
@@ -216,15 +210,15 @@ def _common_of(system: System, shape: Shape, gauss: Shape, given: Numbers) -> _C
             done += part.modes.count
             if part.taper is not None:
                 weight[s, 0] = gauss.rule[WEIGHT] / part.taper.area(gauss.rule[WHERE])
-        for stretch in (*parts[strip.name][:1], *([stretches[strip.name]] if stretches else ())):
-            numbers[s, STRAIN] = stretch.natural_strain
-            if isinstance(stretch, Stretching):
-                numbers[s, STRETCHING] = stretch.axial_rigidity
+        if parts[strip.name]:
+            numbers[s, STRAIN] = parts[strip.name][0].natural_strain
+        if (consistent := stretches.get(strip.name)) is not None:
+            numbers[s, STRAIN], numbers[s, STRETCHING] = consistent.natural_strain, consistent.axial_rigidity
         if system.weight.size:
             dead = in_order(system.weight[layout.strip(strip.name)].reshape(-1, 2), shape)
             numbers[s, PER_U:] = np.concatenate((scene.weight_of(strip.name).ravel(), dead.ravel()))
     return _Common(
-        along=_own_profiles(list(bends.values()), along, given, u),
+        along=_own_profiles([bends[strip.name] for strip in scene.strips], along, given, u),
         modes=modes if shape is gauss else _values(tuple(kinds), gauss.rule[WHERE].tobytes()),
         weight=weight,
         split=sum(kind.count for kind in kinds if not isinstance(kind, SlideModes)),
