@@ -180,9 +180,10 @@ def arrays_of(
         (count, strips, modes),
         (count, 3 * bodies + strips * (2 * n - 6 + modes)),
     )
-    filled = [np.empty(each, dtype=kind) for each in shapes]
+    filled: list[Array] = [np.empty(each, dtype=kind) for each in shapes]
     filled += [np.empty((count, *each.shape)) for each in (common.force, common.target, common.springs)]
-    own = Designs(length, energy, *filled, np.empty((count, len(common.frames), 2), dtype=kind))
+    filled.append(np.empty((count, len(common.frames), 2), dtype=kind))
+    own = Designs._make((length, energy, *filled))
     _fill(given, common, ends, shape, gauss, own)
     return own
 
