@@ -149,13 +149,20 @@ class Scene:
 
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The scene's effects of this class, in scene order; sorted out once."""
-        if kind not in self._sorted:
-            self._sorted[kind] = tuple(effect for effect in self.effects if isinstance(effect, kind))
-        return self._sorted[kind]
+        found = self._sorted.get(kind)
+        if found is None:
+            kinds = {each for each in self._kinds if issubclass(each, kind)}
+            found = tuple([effect for effect in self.effects if type(effect) in kinds]) if kinds else ()
+            self._sorted[kind] = found
+        return found
 
     @cached_property
     def _sorted(self) -> dict[type, tuple[Any, ...]]:
         return {}
+
+    @cached_property
+    def _kinds(self) -> set[type]:
+        return set(map(type, self.effects))
 
     def weight_of(self, strip: str) -> NDArray[np.float64]:
         """Return the weight of a strip per du: its parts (3, 2) with 1, u and u^2, as the area [N]."""

@@ -169,7 +169,7 @@ def arrays_of(
 
     shape: at whose points; gauss: at whose points modes are made orthonormal.
     """
-    common = _common_of(system, shape, gauss, given)
+    common = _common_of(system, shape, gauss, ends, given)
     (count, strips, n), kind = given.points.shape[:3], given.points.dtype
     points, modes, bodies = shape.rule.shape[1], common.modes.shape[1], common.force.shape[1] // 3
     shapes = (
@@ -188,7 +188,7 @@ def arrays_of(
     return own
 
 
-def _common_of(system: System, shape: Shape, gauss: Shape, given: Numbers) -> _Common:
+def _common_of(system: System, shape: Shape, gauss: Shape, ends: Ends, given: Numbers) -> _Common:
     """What designs have in common; the profiles of sections that have others are each design's own."""
     scene, u, layout = system.scene, shape.rule[WHERE], system.layout
     parts: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
@@ -225,7 +225,7 @@ def _common_of(system: System, shape: Shape, gauss: Shape, given: Numbers) -> _C
         split=sum(kind.count for kind in kinds if not isinstance(kind, SlideModes)),
         compliance=compliance,
         numbers=numbers,
-        force=_forces(system, Ends.of(scene)),
+        force=_forces(system, ends),
         target=system.drives.target,
         turns=system.drives.turns,
         springs=system.springs,
