@@ -155,10 +155,8 @@ def _distances(many: Many, coarse: Batch, fine: Batch, rows: NDArray[np.int64]) 
     moment = given.rigidity.max(axis=1) / length
     moved, better = (each.centre[rows] - each.centre[rows][:, :1] for each in (coarse, fine))
     units = {"torque": moment, "stiffness": moment, "energy": moment, "strain": np.ones(len(rows))}
-    return {"trajectory": relative(moved - better, better, length)} | {
-        name: relative(
-            getattr(coarse, name)[rows] - getattr(fine, name)[rows], getattr(fine, name)[rows], unit
-        )
+    return {"trajectory": relative(moved, better, length)} | {
+        name: relative(getattr(coarse, name)[rows], getattr(fine, name)[rows], unit)
         for name, unit in units.items()
     }
 

@@ -18,7 +18,7 @@ from spline_model.parameters import Given
 from spline_model.reduced.arrays import Answer, Route
 from spline_model.reduced.many import Share, Stations, follow_all
 from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
-from spline_model.reduced.numbers import Designs, along_of
+from spline_model.reduced.numbers import Designs
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 from spline_model.solution import named, remark
@@ -165,7 +165,7 @@ class Many:
         bend = 0.5 * (self.depth[rows] * length)[:, None] / given.rigidity
         fibre = np.stack((1.0 / (area * modulus * length[:, None]), bend), axis=-1)
         return designs, Stations(
-            along=along_of(at.system, at.shape, model.shape, numbers.over(length), *units)[0],
+            along=at.designs(numbers, *units, gauss=model.shape).along,
             fibre=fibre * designs.energy[:, None, None],
             strips=at.strips,
             shape=at.shape,

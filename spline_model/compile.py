@@ -35,7 +35,7 @@ from spline_model.tables import DriveTable, LoadTable, between_bodies, frames_of
 
 Array = NDArray[np.float64]
 
-UNTURNED = ("layout", "scales", "loads", "weight", "prescribed", "is_preloaded", "rest")
+UNTURNED = ("layout", "scales", "loads", "weight", "is_preloaded", "rest")
 """What of a system is the same at all rotations, and made once."""
 
 
@@ -115,10 +115,14 @@ class System:
         """Frames that bodies carry."""
         return frames_of(self.scene)
 
-    @cached_property
+    @property
     def prescribed(self) -> NDArray[np.int64]:
         """Rows (K,) of the drives that are no props, by their number among the constraints."""
-        return np.flatnonzero(self.drives.prop == 0)
+        shared = self.scene.structure
+        if "prescribed" not in shared:
+            shared["prescribed"] = np.flatnonzero(self.drives.prop == 0)
+        found: NDArray[np.int64] = shared["prescribed"]
+        return found
 
     def require_dead(self, what: str, remedy: str = "`solve` or `release`, which follow it") -> None:
         """Refuse followers; the message ends with the remedy."""

@@ -18,6 +18,7 @@ from spline_model.design import Design, StripDesign
 from spline_model.sections import STATIONS
 from spline_model.solution import CriticalPoint, Status, largest, named
 from spline_model.static_answers import StaticSolution
+from spline_model.strip.compiled import kernel
 
 Array = NDArray[np.float64]
 Grid = tuple[int, int]
@@ -197,7 +198,7 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
 
     def error(of: Callable[[StaticSolution], Array], unit: float) -> float:
         mine, right = of(answer)[rows], of(better)[rows]
-        return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
+        return float(relative(mine[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
     stiffest = max(strip.axial_rigidity / strip.length for strip in design.strips)
@@ -242,16 +243,28 @@ def in_step(one: StaticSolution, other: StaticSolution) -> bool:
     return bool(apart[:, :-1].max(initial=0.0) <= SAME_STATE and apart[:, -1].max() <= SAME_END)
 
 
-def relative(apart: Array, right: Array, unit: Array) -> Array:
-    """Return the largest of D differences (D, ...) over the largest reference value, or over their units (D,)
-    [1].
+def relative(mine: Array, right: Array, unit: Array) -> Array:
+    """Return the largest of the differences of D quantities (D, ...) from the right ones over the largest
+    right value, or over their units (D,) [1].
 
-    The result is nan if there are no values.
+    nan is passed over; the result is nan if there are no values.
     """
     if right.size == 0:
         return np.full(len(right), np.nan)
-    off, scale = (np.fmax.reduce(np.abs(each).reshape(len(each), -1), axis=1) for each in (apart, right))
-    return np.asarray(off / np.where(scale > NOTHING * unit, scale, unit))
+    found = np.empty((2, len(right)))
+    _largest(mine.reshape(len(mine), -1), right.reshape(len(right), -1), found)
+    return np.asarray(found[0] / np.where(found[1] > NOTHING * unit, found[1], unit))
+
+
+@kernel()
+def _largest(mine, right, found):
+    """Largest magnitudes of the differences of D quantities and of the right ones (2, D)."""
+    for d in range(right.shape[0]):
+        apart = size = -1.0
+        for i in range(right.shape[1]):
+            each, value = abs(mine[d, i] - right[d, i]), abs(right[d, i])
+            apart, size = each if each > apart else apart, value if value > size else size
+        found[0, d], found[1, d] = apart if apart >= 0.0 else np.nan, size if size >= 0.0 else np.nan
 
 
 def _modulus(strip: StripDesign) -> float:

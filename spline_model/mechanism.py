@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, Literal, Self, Unpack
 
 import numpy as np
@@ -108,7 +108,9 @@ class Mechanism:
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """Return the scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
-        return self.scene.with_effects(drive)
+        scene = self.scene.with_effects(drive)
+        vars(scene)["structure"] = self.scene.structure.setdefault(("driven", drive.body), {})
+        return scene
 
     def system(self, rotation: float | None = None, body: str | None = None) -> System:
         """Return the system of the scene, with a body's ``rotation`` [rad] driven where one is given.
@@ -137,7 +139,10 @@ class Mechanism:
 
     @cached_property
     def _is_loose(self) -> bool:
-        return bool(loose(self.scene))
+        shared = self.scene.structure
+        if "loose" not in shared:
+            shared["loose"] = bool(loose(self.scene))
+        return bool(shared["loose"])
 
     def released(self) -> Scene:
         """Return the scene in motion (``in_motion``), without the drives that only hold the start.
@@ -262,7 +267,18 @@ def compliant_mechanism(
         ),
         effects=(*(each for each in built if not isinstance(each, Body)), *clamps),
     )
+    if not given:
+        joined = tuple((s.name, s.root, s.tip, s.root_joint, s.tip_joint) for s in strips)
+        shared = _structure(joined, tuple(body.name for body in bodies), names, grid)
+        vars(scene)["structure"] = shared
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
+
+
+@lru_cache(maxsize=256)
+def _structure(*of: Any) -> dict[Any, Any]:
+    """The ``Scene.structure`` of all mechanisms without parameters whose strips, bodies, effects and
+    discretisation are these."""
+    return {}
 
 
 def _joined(

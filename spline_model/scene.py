@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, wraps
 from typing import Any, TypeVar
 
 import numpy as np
@@ -21,6 +22,20 @@ AXES = ("x", "y", "rotation")
 """What the coordinates of a body are called."""
 Effect = Potential | Inertia | Dissipation | Load | Constraint
 Kind = TypeVar("Kind", bound=Effect)
+T = TypeVar("T")
+
+
+def structural(make: Callable[[Any], T]) -> cached_property[T]:
+    """Return a property that is made once for all scenes of one structure (``Scene.structure``)."""
+    name = make.__name__
+
+    @wraps(make)
+    def made(own: Scene) -> T:
+        if name not in own.structure:
+            own.structure[name] = make(own)
+        return own.structure[name]  # type: ignore[no-any-return]
+
+    return cached_property(made)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,6 +136,11 @@ class Scene:
             expected = "one drive, support or rotation of the path for each coordinate of a body"
             raise InvalidParameter(f"{AXES[axis]} of {body}", "two", expected)
 
+    @cached_property
+    def structure(self) -> dict[Any, Any]:
+        """What does not go by the numbers of a scene, by name; many scenes may share it."""
+        return {}
+
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""
         return replace(self, effects=(*self.effects, *more))
@@ -149,9 +169,14 @@ class Scene:
 
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The scene's effects of this class, in scene order; sorted out once."""
-        if kind not in self._sorted:
-            self._sorted[kind] = tuple(effect for effect in self.effects if isinstance(effect, kind))
-        return self._sorted[kind]
+        found = self._sorted.get(kind)
+        if found is None:
+            places = self.structure.get(kind)
+            if places is None:
+                places = [i for i, effect in enumerate(self.effects) if isinstance(effect, kind)]
+                self.structure[kind] = places
+            found = self._sorted[kind] = tuple([self.effects[i] for i in places])
+        return found
 
     @cached_property
     def _sorted(self) -> dict[type, tuple[Any, ...]]:
@@ -190,26 +215,26 @@ class Scene:
         vars(same).update(effects=aimed, _sorted={})
         return same
 
-    @cached_property
+    @structural
     def driven_row(self) -> int | None:
         """Index in z of the driven rotation's torque, if there is one."""
         turned = self.turned
         held = zip(self.of(Constraint), self.layout.multipliers, strict=True)
         return next((row for each, (row, _) in held if each is turned), None)
 
-    @cached_property
+    @structural
     def free_ends(self) -> tuple[str, ...]:
         """The strips whose tips are free, with a frame or without one."""
         held = {each.strip for each in self.of(Clamp) if each.end == "end" and not each.free}
         return tuple(strip.name for strip in self.strips if strip.name not in held)
 
-    @cached_property
+    @structural
     def clamps(self) -> dict[tuple[str, str], slice]:
         """Rows of the clamps by strip and end, "start" or "end"."""
         held = enumerate(self.of(Constraint))
         return {(c.strip, c.end): self.layout.rows(i) for i, c in held if isinstance(c, Clamp)}
 
-    @cached_property
+    @structural
     def layout(self) -> Layout:
         """The unknowns counted off: control points, bodies, axial forces, multipliers."""
         at, strips, bodies, modes, rows = 0, {}, {}, [], []

@@ -15,7 +15,7 @@ from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.paper import evaluate
 from spline_model.scene import Scene
-from spline_model.sections import STATIONS, Sections, by_piece, reactions, sections
+from spline_model.sections import STATIONS, Sections, by_piece, curves, reactions, sections
 
 Array = NDArray[np.float64]
 
@@ -127,8 +127,8 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
     if moving:
         states = _with_axial_forces(system, states)
     layout, along = system.layout, sections(system, states, STATIONS)
-    (rest_shape, rest), arc = _at_rest(scene)
-    tangent, bend = (_curve(system, states, order) for order in (1, 2))
+    rest_shape, rest = (curves(system, system.rest[None], STATIONS, order)[0] for order in (0, 1))
+    arc, (tangent, bend) = _arc_length(scene), (curves(system, states, STATIONS, order) for order in (1, 2))
     speed, rest_speed = np.linalg.norm(tangent, axis=-1), np.linalg.norm(rest, axis=-1)
     rotation = np.unwrap(np.arctan2(_cross(rest, tangent), np.sum(rest * tangent, axis=-1)), axis=-1)
     for g, root in enumerate(strip.root for strip in mechanism.design.strips):
@@ -158,27 +158,14 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
     )
 
 
-def _curve(system: System, states: Array, order: int) -> Array:
-    """That derivative of the strips' curves at the stations, in the u of their pieces (S, G, P, 2)."""
-    layout, parts = system.layout, []
-    for strips, at in by_piece(system.scene, STATIONS):
-        points = [states[:, layout.strip(strip.name)].reshape(len(states), -1, 2) for strip in strips]
-        parts.append(strips[0].basis.evaluate(at, order) @ np.stack(points, axis=1))
-    return np.concatenate(parts, axis=2)
-
-
-def _at_rest(scene: Scene) -> tuple[tuple[Array, Array], Array]:
-    """The strips' curves and their first derivative at rest (G, P, 2), and the arc length (G, P) [m]."""
-    curve, lengths = [], []
+def _arc_length(scene: Scene) -> Array:
+    """Arc length at rest (G, P) [m] up to the stations."""
+    begin, parts = np.zeros((len(scene.whole), 1)), []
     for strips, at in by_piece(scene, STATIONS):
-        points = np.array([strip.control_points for strip in strips])
-        curve.append([strips[0].basis.evaluate(at, order) @ points for order in range(2)])
-        before = np.array([[strip.length_to(np.ones(1))[0]] for strip in strips])
-        lengths.append((np.array([strip.length_to(at) for strip in strips]), before))
-    done = np.cumsum([whole for _, whole in lengths], axis=0)
-    arc = [inside + (done[k - 1] if k else 0.0) for k, (inside, _) in enumerate(lengths)]
-    shape, tangent = (np.concatenate([part[order] for part in curve], axis=1) for order in range(2))
-    return (shape, tangent), np.concatenate(arc, axis=1)
+        lengths = np.array([strip.length_to(np.append(at, 1.0)) for strip in strips])
+        parts.append(begin + lengths[:, :-1])
+        begin = begin + lengths[:, -1:]
+    return np.concatenate(parts, axis=1)
 
 
 def _stretch(mechanism: Mechanism, scene: Scene, axial_force: Array, stretch: Array) -> None:

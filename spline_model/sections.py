@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import Bezier
 from spline_model.compile import System
-from spline_model.continuation.followed import balance
 from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
 from spline_model.scene import Scene, Strip
 from spline_model.solution import read_only
+from spline_model.strip.compiled import called, kernel
 
 Array = NDArray[np.float64]
 
@@ -51,112 +53,130 @@ def by_piece(scene: Scene, stations: Array) -> list[tuple[list[Strip], Array]]:
     return [([each[k] for each in wholes], (count * stations - k)[piece == k]) for k in range(count)]
 
 
+def curves(system: System, states: Array, stations: Array, order: int) -> Array:
+    """Return that derivative of the strips' curves at ``stations`` (P,), in the u of their pieces.
+
+    Points or derivatives (S, G, P, 2) [m] of states (S, N).
+    """
+    groups = by_piece(system.scene, stations)
+    parts = [
+        strips[0].basis.evaluate(at, order) @ _points(system, states, strips).swapaxes(0, 1)
+        for strips, at in groups
+    ]
+    return np.concatenate(parts, axis=2)
+
+
+def _points(system: System, states: Array, strips: list[Strip]) -> Array:
+    """Control points (G, S, n, 2) of strips of one basis [m]."""
+    own = [states[:, system.layout.strip(strip.name)] for strip in strips]
+    return np.array(own).reshape(len(strips), len(states), -1, 2)
+
+
 def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:
     """Return the sections of all strips at ``stations`` (P,), u in [0, 1], of states (S, N).
 
     balanced: whether forces and moments are by balance with the clamp at the root [N, N m].
     """
-    parts = [_alike(system, states, strips, at, balanced) for strips, at in by_piece(system.scene, stations)]
-    if len(parts) == 1:
-        return parts[0]
-    names = [part.name for part in fields(Sections)]
-    return Sections(**{name: np.concatenate([getattr(p, name) for p in parts], axis=2) for name in names})
+    scene, size = system.scene, (len(states), len(system.scene.whole), len(stations))
+    axial, moment, shear, shape = *np.empty((3, *size)), np.empty((*size, 2))
+    weights = scene.of(StripGravity)
+    done = 0
+    for strips, at in by_piece(scene, stations):
+        inside = slice(done, done + len(at))
+        found = axial[..., inside], moment[..., inside], shear[..., inside], shape[..., inside, :]
+        places = [system.layout.strip(strip.name).start for strip in strips]
+        roots = [scene.clamps.get((strip.name, "start")) for strip in strips]
+        clamps = [-1 if rows is None else rows.start for rows in roots]
+        dead, borne = np.zeros((len(strips), 3, 2)), np.zeros((len(strips), 2, len(at)))
+        for g, strip in enumerate(strips if weights else ()):
+            dead[g] = scene.weight_of(strip.name)
+            for weight in weights:
+                if weight.strip == strip.name:
+                    mass = weight.linear_density * strip.length_to(at, strip.taper)
+                    borne[g] += np.multiply.outer(weight.acceleration, mass)
+        tables, lanes = _tables(strips[0].basis, at.tobytes()), np.empty((6, len(at)))
+        where = np.array((places, clamps))
+        _balance(np.ascontiguousarray(states), where, tables, at, dead, borne, bool(weights), lanes, found)
+        if not balanced:
+            axial[..., inside], moment[..., inside] = _by_law(system, states, strips, at)
+        done += len(at)
+    return Sections(shape=shape, axial_force=axial, bending_moment=moment, shear_force=shear)
 
 
-def _alike(system: System, states: Array, strips: list[Strip], stations: Array, balanced: bool) -> Sections:
-    """Sections of strips of one basis: one product with its values, the strips at rest a state more."""
-    scene, layout, count, basis = system.scene, system.layout, len(states), strips[0].basis
-    points = np.empty((basis.control_points, 2, count + 1, len(strips)))
-    for g, strip in enumerate(strips):
-        own = states[:, layout.strip(strip.name)].reshape(count, -1, 2)
-        points[:, :, :count, g], points[:, :, count, g] = own.transpose(1, 2, 0), strip.control_points
-    values = np.concatenate([basis.evaluate(stations, order) for order in range(2 + (not balanced))])
-    curve = (values @ points.reshape(len(points), -1)).reshape(-1, len(stations), *points.shape[1:])
-    x1, y1 = curve[1, :, 0], curve[1, :, 1]  # (P, S + 1, G), the last state at rest
-    speed = np.sqrt(x1 * x1 + y1 * y1)
-    x, y = x1[:, :count] / speed[:, :count], y1[:, :count] / speed[:, :count]
-
-    pull = _pulls(system, states, strips, stations)
-    shear = pull[1] * x - pull[0] * y
-    if balanced:
-        force = (pull[0] * x + pull[1] * y).transpose(1, 2, 0)
-        moment = _balanced_moments(system, states, strips, points[:, :, :count], stations)
-    else:
-        moment = _moments(scene, strips, curve, speed, stations)
-        force = _axial_forces(system, states, strips, stations, speed[:, :count] / speed[:, count:])
-    return Sections(
-        shape=np.ascontiguousarray(curve[0, :, :, :count].transpose(2, 3, 0, 1)),
-        axial_force=np.ascontiguousarray(force),
-        bending_moment=np.ascontiguousarray(moment.transpose(1, 2, 0)),
-        shear_force=np.ascontiguousarray(shear.transpose(1, 2, 0)),
-    )
+@lru_cache(maxsize=64)
+def _tables(basis: Bezier, at: bytes) -> Array:
+    """The basis at places u (P,), its derivative and integrals of it, of u and of u^2 times it (5, n, P)."""
+    u = np.frombuffer(at)
+    values = [basis.evaluate(u), basis.evaluate(u, 1), *(basis.areas(u, power) for power in range(3))]
+    return np.ascontiguousarray(np.array(values).transpose(0, 2, 1))
 
 
-def _moments(scene: Scene, strips: list[Strip], curve: Array, speed: Array, stations: Array) -> Array:
-    """Bending moments (P, S, G) by the law, of curves and derivatives (3, P, 2, S + 1, G), rest last."""
-    (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)
-    turning = (x1 * y2 - y1 * x2) / speed**2
-    moment: Array = np.zeros_like(turning[:, :-1])
-    bends = {bending.strip: bending for bending in scene.of(Bending)}
-    for g, strip in enumerate(strips):
-        if bending := bends.get(strip.name):
-            rest = turning[:, -1:, g] / speed[:, -1:, g]
-            length = speed[:, -1:, g] if bending.measure == "material" else speed[:, :-1, g]
-            strain = turning[:, :-1, g] / length - rest - bending.natural_curvature
-            moment[..., g] = bending.moment_at(strain, strip.basis.degree, stations)
-    return moment
+@kernel()
+def _balance(states, where, tables, u, dead, borne, heavy, lanes, found):
+    """Force, moment and shear of what is beyond on what is before by balance with the clamp of the root, and
+    the points.
 
-
-def _pulls(system: System, states: Array, strips: list[Strip], stations: Array) -> Array:
-    """Force of what is beyond a station on what is before (2, P, S, G), by clamp of the root and weight.
-
-    It is one for all stations where nothing has a weight, P = 1.
+    where (2, G): places of the first control points and of the clamps, -1 of none; dead (G, 3, 2): weight
+    per du with 1, u and u^2, borne (G, 2, P) up to the stations [N].
     """
-    weights = system.scene.of(StripGravity)
-    pull = np.empty((2, len(stations) if weights else 1, len(states), len(strips)))
-    for g, strip in enumerate(strips):
-        pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
-        for weight in weights:
-            if weight.strip == strip.name:
-                mass = weight.linear_density * strip.length_to(stations, strip.taper)
-                pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
-    return pull
+    axial, moment, shear, shape = found
+    x, y, tx, ty, ax, ay = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
+    for row in range(states.shape[0]):
+        for g in range(where.shape[1]):
+            at, clamp, fx, fy, couple = where[0, g], where[1, g], 0.0, 0.0, 0.0
+            z = states[row]
+            if clamp >= 0:
+                fx, fy, couple = z[clamp], z[clamp + 1], z[clamp + 2]
+            _curve(z, at, tables[0], x, y)
+            _curve(z, at, tables[1], tx, ty)
+            for p in range(u.size):
+                shape[row, g, p, 0], shape[row, g, p, 1] = x[p], y[p]
+                speed = np.sqrt(tx[p] * tx[p] + ty[p] * ty[p])
+                ex, ey, px, py = tx[p] / speed, ty[p] / speed, -fx - borne[g, 0, p], -fy - borne[g, 1, p]
+                axial[row, g, p], shear[row, g, p] = px * ex + py * ey, py * ex - px * ey
+                moment[row, g, p] = (x[p] - z[at]) * fy - (y[p] - z[at + 1]) * fx - couple
+            for power in range(3 * heavy):
+                _curve(z, at, tables[2 + power], ax, ay)
+                for p in range(u.size):
+                    whole = u[p] ** (power + 1) / (power + 1)
+                    bx, by = whole * x[p] - ax[p], whole * y[p] - ay[p]
+                    moment[row, g, p] += bx * dead[g, power, 1] - by * dead[g, power, 0]
 
 
-def _balanced_moments(
-    system: System, states: Array, strips: list[Strip], points: Array, stations: Array
-) -> Array:
-    """Bending moments (P, S, G) by balance, of control points (n, 2, S, G)."""
-    basis = strips[0].basis
-    values = basis.evaluate(stations)
-    by_strip = [
-        balance(
-            points[..., g].transpose(2, 0, 1),
-            values,
-            (basis, stations),
-            clamp_reactions(system, states, strip.name, "start"),
-            system.scene.weight_of(strip.name),
-        )
-        for g, strip in enumerate(strips)
-    ]
-    return np.array(by_strip).transpose(2, 1, 0)
+@called()
+def _curve(z, at, table, x, y):
+    """Coordinates of a curve whose control points begin at a place of the unknowns."""
+    for p in range(x.size):
+        x[p] = y[p] = 0.0
+    for i in range(table.shape[0]):
+        px, py = z[at + 2 * i], z[at + 2 * i + 1]
+        for p in range(x.size):
+            x[p] += table[i, p] * px
+            y[p] += table[i, p] * py
 
 
-def _axial_forces(
-    system: System, states: Array, strips: list[Strip], stations: Array, stretch: Array
-) -> Array:
-    """Axial forces (S, G, P) by the law; stretch (P, S, G)."""
-    scene, force = system.scene, np.zeros((len(states), len(strips), len(stations)))
-    for g, strip in enumerate(strips):
-        for consistent in scene.of(Stretching):
-            if consistent.strip == strip.name:
-                strain = stretch[..., g] - 1.0 - consistent.natural_strain
-                force[:, g] += consistent.axial_rigidity * strain.T
-        for i, mixed in enumerate(scene.of(MixedStretching)):
-            if mixed.strip == strip.name:
-                axial = states[:, system.layout.axial_modes(i)]
-                force[:, g] += axial @ mixed.modes.evaluate(stations).T
-    return force
+def _by_law(system: System, states: Array, strips: list[Strip], at: Array) -> tuple[Array, Array]:
+    """Axial forces and moments (S, G, P) of strips of one basis at places u (P,) by the law."""
+    scene, basis = system.scene, strips[0].basis
+    rest = np.array([strip.control_points for strip in strips])[:, None]
+    points = np.concatenate((_points(system, states, strips), rest), axis=1)
+    (x1, y1), (x2, y2) = (np.moveaxis(basis.evaluate(at, order) @ points, -1, 0) for order in (1, 2))
+    speed = np.sqrt(x1 * x1 + y1 * y1)
+    turning, stretch = (x1 * y2 - y1 * x2) / speed**2, speed[:, :-1] / speed[:, -1:]
+    force, moment = np.zeros((2, *stretch.shape))
+    place = {strip.name: g for g, strip in enumerate(strips)}
+    for bending in scene.of(Bending):
+        if (g := place.get(bending.strip, -1)) >= 0:
+            length = speed[g, -1:] if bending.measure == "material" else speed[g, :-1]
+            strain = turning[g, :-1] / length - turning[g, -1] / speed[g, -1] - bending.natural_curvature
+            moment[g] = bending.moment_at(strain.T, basis.degree, at).T
+    for consistent in scene.of(Stretching):
+        if (g := place.get(consistent.strip, -1)) >= 0:
+            force[g] += consistent.axial_rigidity * (stretch[g] - 1.0 - consistent.natural_strain)
+    for i, mixed in enumerate(scene.of(MixedStretching)):
+        if (g := place.get(mixed.strip, -1)) >= 0:
+            force[g] += states[:, system.layout.axial_modes(i)] @ mixed.modes.evaluate(at).T
+    return force.swapaxes(0, 1), moment.swapaxes(0, 1)
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:

@@ -16,7 +16,6 @@ from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.parameters import KEYWORDS, Given, require_names
 from spline_model.pivot import turned
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
-from spline_model.reduced.numbers import along_of
 from spline_model.reduced.states import products, section_forces, unknowns_of, whole_tangents
 from spline_model.sections import STATIONS
 from spline_model.static_answers import StaticSolution
@@ -114,9 +113,7 @@ def sensitivities(
         row = system.drives.row[model.bodies.driven]
         torque = replace(torque, derivative=states.derivative[:, row])
     at = model.at_stations(np.asarray(stations, dtype=float))
-    designs = designs._replace(
-        along=along_of(system, at.shape, model.shape, numbers.over(units[0]), *units)[0]
-    )
+    designs = at.designs(numbers, *units, gauss=model.shape)
     at_stations = (at.of_design(designs, p) for p in range(len(models)))
     stress = [_fibre_stress(*each) for each in zip(at_stations, given.section, y, strict=True)]
     return Sensitivities(

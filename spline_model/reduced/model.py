@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,6 @@ from spline_model.reduced.numbers import (
     Designs,
     Ends,
     Numbers,
-    along_of,
     arrays_of,
     shape_at,
     shape_of,
@@ -118,9 +118,13 @@ class Reduced:
         """Bodies at the strips' ends."""
         return Ends(self.strips.roots, self.strips.tips)
 
-    def designs(self, given: Numbers, length: Array, energy: Array) -> Designs:
-        """Return the arrays of D designs of the scene, over lengths (D,) [m] and energies (D,) [J]."""
-        return arrays_of(self.system, self.shape, self.ends, given, length, energy)
+    def designs(self, given: Numbers, length: Array, energy: Array, gauss: Shape | None = None) -> Designs:
+        """Return the arrays of D designs of the scene, over lengths (D,) [m] and energies (D,) [J].
+
+        gauss: the Gauss points, of a model at stations.
+        """
+        own = self.shape
+        return arrays_of(self.system, own, own if gauss is None else gauss, self.ends, given, length, energy)
 
     def arrays(self) -> Arrays:
         """What kernels know of it, with working arrays of their own."""
@@ -134,10 +138,9 @@ class Reduced:
     def at_stations(self, stations: Array) -> Reduced:
         """Return the same with stations u (P,) [1] for Gauss points, where sections are recovered."""
         shape = shape_at(self.system.scene.strips[0].basis, stations, np.zeros(len(stations)))
-        length, energy = np.array([self.length]), np.array([self.energy])
-        own = Numbers.of(self.system.scene).over(length)
-        along, rest, _ = along_of(self.system, shape, self.shape, own, length, energy)
-        return replace(self, shape=shape, strips=self.strips._replace(along=along[0]), rest=rest[0])
+        units, at = (np.array([self.length]), np.array([self.energy])), replace(self, shape=shape)
+        own = at.designs(Numbers.of(self.system.scene), *units, gauss=self.shape)
+        return replace(at, strips=self.strips._replace(along=own.along[0]), rest=own.rest[0])
 
 
 def reduced(system: System) -> Reduced | None:
@@ -161,17 +164,48 @@ def require_reduced(system: System) -> Reduced:
     return model
 
 
+class _Structure(NamedTuple):
+    """What of a model does not go by its numbers: basis, ends of strips, axial forces of stretching, code of
+    the measure, held coordinates and the driven rotation among them; free: the free coordinates of the bodies
+    by the number of unknowns, as they are asked for."""
+
+    shape: Shape
+    ends: Ends
+    split: int
+    measure: int
+    held: NDArray[np.int64]
+    driven: int
+    free: dict[int, NDArray[np.int64]]
+
+    @classmethod
+    def of(cls, system: System) -> Self:
+        """That of a system that the elements know."""
+        scene, drives = system.scene, system.drives
+        bending, first = scene.of(Bending)[0], scene.strips[0]
+        mixed = (e.modes for e in scene.of(MixedStretching) if e.strip == first.name)
+        row = np.flatnonzero(drives.row == scene.driven_row)
+        return cls(
+            shape=shape_of(first.basis, bending.gauss_points),
+            ends=Ends.of(scene),
+            split=sum(modes.count for modes in mixed if not isinstance(modes, SlideModes)),
+            measure=MEASURES.index(bending.measure),
+            held=drives.coordinate - system.layout.poses.start,
+            driven=int(row[0]) if row.size else -1,
+            free={},
+        )
+
+
 def _reduced(system: System) -> Reduced | None:
-    scene = system.scene
-    if not _known(scene):
+    scene, shared = system.scene, system.scene.structure
+    if "reduced" not in shared:
+        shared["reduced"] = _Structure.of(system) if _known(scene) else None
+    fixed: _Structure | None = shared["reduced"]
+    if fixed is None:
         return None
-    basis, bending = scene.strips[0].basis, scene.of(Bending)[0]
     length, energy = system.scales.length, system.scales.energy
-    shape, ends = shape_of(basis, bending.gauss_points), Ends.of(scene)
-    own = arrays_of(system, shape, ends, Numbers.of(scene), np.array([length]), np.array([energy]))
-    first, c = scene.strips[0].name, own.compliance[0]
-    mixed = (e.modes for e in scene.of(MixedStretching) if e.strip == first)
-    split = sum(modes.count for modes in mixed if not isinstance(modes, SlideModes))
+    shape, ends, split = fixed.shape, fixed.ends, fixed.split
+    own = arrays_of(system, shape, shape, ends, Numbers.of(scene), np.array([length]), np.array([energy]))
+    c = own.compliance[0]
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
     strips = Strips(
@@ -184,23 +218,21 @@ def _reduced(system: System) -> Reduced | None:
         split=split,
         coupled=outer * split,
         outer=outer,
-        measure=MEASURES.index(bending.measure),
+        measure=fixed.measure,
     )
-    held = system.drives.coordinate - system.layout.poses.start
-    row = np.flatnonzero(system.drives.row == scene.driven_row)
     bodies = Bodies(
         rest=own.start[0, : own.force.shape[2]],
         load=own.force[0, 0],
         weight=own.force[0, 1],
-        free=held,
-        held=held,
-        driven=int(row[0]) if row.size else -1,
+        free=fixed.held,
+        held=fixed.held,
+        driven=fixed.driven,
         springs=own.springs[0],
         frames=system.frames.among(system.layout.poses.start, length),
     )
     return Reduced(
         system=system,
-        bodies=_freed(bodies, len(bodies.rest) + outer * len(scene.strips)),
+        bodies=_freed(bodies, len(bodies.rest) + outer * len(scene.strips), fixed.free),
         strips=strips,
         shape=shape,
         rest=own.rest[0],
@@ -225,13 +257,18 @@ def _known(scene: Scene) -> bool:
     )
 
 
-def _freed(bodies: Bodies, size: int) -> Bodies:
-    """The bodies with so many unknowns, mean axial forces behind poses, free but where held or carried."""
-    poses, fixed = len(bodies.rest), {*bodies.held.tolist(), *bodies.frames.carried}
-    load, weight = np.zeros((2, size))
+def _freed(bodies: Bodies, size: int, known: dict[int, NDArray[np.int64]] | None = None) -> Bodies:
+    """The bodies with so many unknowns, mean axial forces behind poses, free but where held or carried;
+    known: free ones by that number."""
+    known = {} if known is None else known
+    if size not in known:
+        fixed = {*bodies.held.tolist(), *bodies.frames.carried}
+        known[size] = np.array([place for place in range(size) if place not in fixed], dtype=np.int64)
+    if size == len(bodies.load):
+        return bodies._replace(free=known[size])
+    poses, (load, weight) = len(bodies.rest), np.zeros((2, size))
     load[:poses], weight[:poses] = bodies.load[:poses], bodies.weight[:poses]
-    free = np.array([place for place in range(size) if place not in fixed], dtype=np.int64)
-    return bodies._replace(load=load, weight=weight, free=free)
+    return bodies._replace(load=load, weight=weight, free=known[size])
 
 
 def in_units(system: System, matrix: Array) -> Array:

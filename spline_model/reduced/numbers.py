@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, Bezier, SlideModes
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, Stretching
-from spline_model.effects.elastic import Taper
 from spline_model.scene import Scene
+from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.element import (
     CURL,
     CURVATURE,
@@ -24,7 +24,6 @@ from spline_model.strip.element import (
     FIRST,
     GROUNDED,
     MODES,
-    ON_POINTS,
     PER_U,
     REACH,
     RIGIDITY,
@@ -34,16 +33,16 @@ from spline_model.strip.element import (
     STRAIN,
     STRETCHING,
     TIP,
+    WEIGHT,
     WHERE,
     Shape,
 )
 
 Array = NDArray[Any]  # real, or complex with a step
+Places = NDArray[np.int64]
 
 DIGITS = 12
 """Of b/L and t/L over those of the scene: what differs less has the same profile."""
-ROUND_OFF = 1e-14
-"""Difference of speeds along a strip, in its mean, that is none."""
 
 
 class Numbers(NamedTuple):
@@ -67,25 +66,19 @@ class Numbers(NamedTuple):
     def of(cls, scene: Scene) -> Self:
         """The scene's own, D = 1."""
         same = np.ones((1, len(scene.strips)))
-        return cls(
-            points=np.array([[strip.control_points for strip in scene.strips]]),
-            centres=np.array([[body.centre for body in scene.bodies]], dtype=float).reshape(1, -1, 2),
-            **dict.fromkeys(("longer", "width", "thickness", "area", "bending", "axial"), same),
-        )
-
-    def over(self, length: Array) -> Self:
-        """Return the same with points and centres over the length (D,) of each design [1]."""
-        wide = length[:, None, None]
-        return self._replace(points=self.points / wide[..., None], centres=self.centres / wide)
+        points = np.array([[strip.control_points for strip in scene.strips]])
+        centres = np.array([[body.centre for body in scene.bodies]], dtype=float).reshape(1, -1, 2)
+        return cls(points, centres, same, same, same, same, same, same)
 
 
 class Designs(NamedTuple):
     """Arrays of D designs, over the length (D,) [m] and energy (D,) [J] of each.
 
-    along (D, S, G, 11 + K), numbers (D, S, 16 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
-    G): curvature; to_modes (D, S, K, K): axial forces of the scene from those of the element; start (D, Y):
-    at rest; force (D, 2, 3 B): load and weight as in ``Bodies``; target (D, H): change of the held
-    coordinates; springs (D, 3 B, 3 B) as in ``Bodies``; levers (D, C, 2) of frames.
+    along (D, S, P, 11 + K), numbers (D, S, 16 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
+    P): curvature; to_modes (D, S, K, K): axial forces of the scene from those of the element, whose modes are
+    orthonormal, weighed by their compliance over that at the start; start (D, Y): at rest; force (D, 2, 3 B):
+    load and weight as in ``Bodies``; target (D, H): change of the held coordinates; springs (D, 3 B, 3 B) as
+    in ``Bodies``; levers (D, C, 2) of frames.
     """
 
     length: Array
@@ -106,8 +99,8 @@ class Ends(NamedTuple):
     """Bodies (S,) at the strips' roots and tips, or GROUNDED; free ends are bodies behind those of the
     scene."""
 
-    roots: NDArray[np.int64]
-    tips: NDArray[np.int64]
+    roots: Places
+    tips: Places
 
     @classmethod
     def of(cls, scene: Scene) -> Self:
@@ -121,6 +114,30 @@ class Ends(NamedTuple):
                 carriers.append(free if to is None else at.get(to, GROUNDED))
                 free += to is None
         return cls(*(np.array(carriers, dtype=np.int64) for carriers in found.values()))
+
+
+class _Common(NamedTuple):
+    """What all designs of a scene have in common, in SI units, by the places of what it becomes.
+
+    along (1 or D, S, P, 11 + K): stress-free curvature over that at rest, EI, numbers of the curl, modes of
+    the scene's axial forces, of which ``split`` are none of sliding; modes (G, K) at the Gauss points, and
+    weights (S, 2, G) of those of stretching, over the area of the section, and of those of sliding;
+    compliance (S, K); numbers (S, 16 + 2 n): EA and strain of stretching, dead loads; force (2, 3 B); target,
+    turns (H,); springs; frames (C, 3) among the poses; bodies: B without free ends.
+    """
+
+    along: Array
+    modes: Array
+    weight: Array
+    split: int
+    compliance: Array
+    numbers: Array
+    force: Array
+    target: Array
+    turns: Places
+    springs: Array
+    frames: Places
+    bodies: int
 
 
 def in_order(points: Array, shape: Shape) -> Array:
@@ -146,239 +163,259 @@ def shape_at(basis: Bezier, u: NDArray[np.float64], weight: NDArray[np.float64])
 
 
 def arrays_of(
-    system: System, shape: Shape, ends: Ends, given: Numbers, length: Array, energy: Array
+    system: System, shape: Shape, gauss: Shape, ends: Ends, given: Numbers, length: Array, energy: Array
 ) -> Designs:
-    """Return the arrays of D designs of a system's scene, over lengths (D,) [m] and energies (D,) [J]."""
-    given = given.over(length)
-    along, rest, to_modes = along_of(system, shape, shape, given, length, energy)
-    return Designs(
-        length=length,
-        energy=energy,
-        along=along,
-        rest=rest,
-        to_modes=to_modes,
-        numbers=_numbers(system, shape, ends, given, energy / length),
-        compliance=_compliances(system.scene, given) * (energy / length)[:, None, None],
-        start=_starts(system.scene, ends, given, to_modes.shape[-1]),
-        force=_forces(system, ends, length, energy),
-        target=system.drives.target / np.where(system.drives.turns == 1, 1.0, length[:, None]),
-        springs=_springs(system, length, energy),
-        levers=_levers(system, given),
+    """Return the arrays of D designs of a system's scene, over lengths (D,) [m] and energies (D,) [J].
+
+    shape: at whose points; gauss: at whose points modes are made orthonormal.
+    """
+    common = _common_of(system, shape, gauss, ends, given)
+    (count, strips, n), kind = given.points.shape[:3], given.points.dtype
+    points, modes, bodies = shape.rule.shape[1], common.modes.shape[1], common.force.shape[1] // 3
+    shapes = (
+        (count, strips, points, MODES + modes),
+        (count, strips, points),
+        (count, strips, modes, modes),
+        (count, *common.numbers.shape),
+        (count, strips, modes),
+        (count, 3 * bodies + strips * (2 * n - 6 + modes)),
+    )
+    filled: list[Array] = [np.empty(each, dtype=kind) for each in shapes]
+    filled += [np.empty((count, *each.shape)) for each in (common.force, common.target, common.springs)]
+    filled.append(np.empty((count, len(common.frames), 2), dtype=kind))
+    own = Designs._make((length, energy, *filled))
+    _fill(given, common, ends, shape, gauss, own)
+    return own
+
+
+def _common_of(system: System, shape: Shape, gauss: Shape, ends: Ends, given: Numbers) -> _Common:
+    """What designs have in common; the profiles of sections that have others are each design's own."""
+    scene, u, layout = system.scene, shape.rule[WHERE], system.layout
+    parts: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
+    for effect in scene.of(MixedStretching):
+        parts[effect.strip].append(effect)
+    bends, stretches = {e.strip: e for e in scene.of(Bending)}, {e.strip: e for e in scene.of(Stretching)}
+    kinds = [e.modes for e in parts[scene.strips[0].name]]
+    modes = _values(tuple(kinds), u.tobytes())
+    along = np.zeros((1, len(parts), len(u), MODES + modes.shape[1]))
+    along[..., MODES:] = modes
+    numbers = np.zeros((len(parts), PER_U + 6 + 2 * len(shape.order)))
+    weight = np.empty((len(parts), 2, gauss.rule.shape[1]))
+    weight[:] = gauss.rule[WEIGHT]
+    compliance = np.empty((len(parts), modes.shape[1]))
+    for s, strip in enumerate(scene.strips):
+        _add_profile(bends[strip.name], strip.basis.degree, u, along[0, s])
+        done = 0
+        for part in parts[strip.name]:
+            compliance[s, done : done + part.modes.count] = part.axial_compliance
+            done += part.modes.count
+            if part.taper is not None:
+                weight[s, 0] = gauss.rule[WEIGHT] / part.taper.area(gauss.rule[WHERE])
+        if parts[strip.name]:
+            numbers[s, STRAIN] = parts[strip.name][0].natural_strain
+        if (consistent := stretches.get(strip.name)) is not None:
+            numbers[s, STRAIN], numbers[s, STRETCHING] = consistent.natural_strain, consistent.axial_rigidity
+        if system.weight.size:
+            dead = in_order(system.weight[layout.strip(strip.name)].reshape(-1, 2), shape)
+            numbers[s, PER_U:] = np.concatenate((scene.weight_of(strip.name).ravel(), dead.ravel()))
+    return _Common(
+        along=_own_profiles([bends[strip.name] for strip in scene.strips], along, given, u),
+        modes=modes if shape is gauss else _values(tuple(kinds), gauss.rule[WHERE].tobytes()),
+        weight=weight,
+        split=sum(kind.count for kind in kinds if not isinstance(kind, SlideModes)),
+        compliance=compliance,
+        numbers=numbers,
+        force=_forces(system, ends),
+        target=system.drives.target,
+        turns=system.drives.turns,
+        springs=system.springs,
+        frames=system.frames.among(layout.poses.start, 1.0).place,
+        bodies=len(scene.bodies),
     )
 
 
-def _bends_of(scene: Scene) -> list[Bending]:
-    """The bending of each strip."""
-    bends = {e.strip: e for e in scene.of(Bending)}
-    return [bends[strip.name] for strip in scene.strips]
+def _add_profile(bend: Bending, degree: int, u: NDArray[np.float64], row: Array) -> None:
+    """What a strip's bending is along it (P, 11 + K)."""
+    row[:, CURVATURE], row[:, RIGIDITY] = bend.natural_curvature, bend.rigidity_at(degree, u)
+    if bend.curl is not None:
+        row[:, CURL], row[:, DROP:MODES] = bend.curl.flattening, bend.curl.drop(degree, u)
 
 
-def _mixed_of(scene: Scene) -> list[list[MixedStretching]]:
-    """The mixed stretching of each strip, a part for each kind of modes."""
-    mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
-    for effect in scene.of(MixedStretching):
-        mixed[effect.strip].append(effect)
-    return list(mixed.values())
+def _own_profiles(bends: list[Bending], along: Array, given: Numbers, u: NDArray[np.float64]) -> Array:
+    """The same of each design (D, S, P, 11 + K) where a profile goes by b/L and t/L, and these differ."""
+    along = along.astype(given.points.dtype, copy=False)
+    profiled = [s for s, bend in enumerate(bends) if any(bend.roots) or (bend.curl and bend.curl.clamped)]
+    ratios = given.longer, given.width, given.thickness
+    if not profiled or all((ratio == 1.0).all() for ratio in ratios):
+        return along
+    along = np.repeat(along, len(given.longer), axis=0)
+    for s in profiled:
+        sides = np.stack((given.width, given.thickness))[..., s] / given.longer[:, s]
+        sides += np.round(sides.real, DIGITS) - sides.real
+        for d, (width, thickness) in enumerate(sides.T):
+            _add_profile(bends[s].with_sides(width, thickness), given.points.shape[2] - 1, u, along[d, s])
+    return along
 
 
-def along_of(
-    system: System, shape: Shape, gauss: Shape, given: Numbers, length: Array, energy: Array
-) -> tuple[Array, Array, Array]:
-    """Return what changes along the strips (D, S, P, 11 + K), curvature at rest (D, S, P) and ``to_modes``.
-
-    given: over their lengths; shape: at whose points; gauss: at whose points ``to_modes`` (D, S, K, K) makes
-    modes orthonormal.
-    """
-    scene, degree = system.scene, system.scene.strips[0].basis.degree
-    bends, parts, u = _bends_of(scene), _mixed_of(scene), shape.rule[WHERE]
-    points = in_order(given.points, shape)[:, :, None]
-    speed, rest = _speeds(points, shape)
-    at_gauss = speed if shape is gauss else _speeds(points, gauss)[0]
-    to_modes = _orthonormal_modes(parts, scene.strips[0].basis, at_gauss)
-    along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]), dtype=speed.dtype)
-    along[..., SPEED], along[..., CURVATURE] = speed, rest
-    stiffer = given.bending / (energy * length)[:, None]
-    for s, bend in enumerate(bends):
-        row = along[:, s]
-        row[..., CURVATURE] += bend.natural_curvature * length[:, None]
-        row[..., RIGIDITY] = bend.rigidity_at(degree, u) * stiffer[:, s, None]
-        if bend.curl is not None:
-            row[..., DROP:MODES] = bend.curl.drop(degree, u)
-            curl = bend.curl.flattening * given.width[:, s] ** 2 / given.thickness[:, s]
-            row[..., CURL] = (curl / length)[:, None]
-        if parts[s]:
-            modes = _values(tuple(e.modes for e in parts[s]), u.tobytes())
-            row[..., MODES:] = modes @ to_modes[:, s]
-        if (any(bend.roots) or (bend.curl and bend.curl.clamped)) and _are_other(given):
-            _add_profiles(bend, row, given, s, degree, u, stiffer[:, s])
-    return along, rest, to_modes
-
-
-def _are_other(given: Numbers) -> bool:
-    """Whether any design has another b/L or t/L than the scene."""
-    return any((part != 1.0).any() for part in (given.longer, given.width, given.thickness))
-
-
-def _add_profiles(
-    bend: Bending, row: Array, given: Numbers, s: int, degree: int, u: NDArray[np.float64], stiffer: Array
-) -> None:
-    """Rigidity and drop of the designs (D, P, 11 + K) of strip s, whose profile goes by b/L and t/L."""
-    sides = np.stack((given.width, given.thickness))[..., s] / given.longer[:, s]
-    sides += np.round(sides.real, DIGITS) - sides.real
-    for d, (width, thickness) in enumerate(sides.T):
-        own = bend.with_sides(width, thickness)
-        row[d, :, RIGIDITY] = own.rigidity_at(degree, u) * stiffer[d]
-        if own.curl:
-            row[d, :, DROP:MODES] = own.curl.drop(degree, u)
-
-
-def _speeds(points: Array, shape: Shape) -> tuple[Array, Array]:
-    """Speed and curvature (D, S, P) [1] at rest of curves of points (D, S, 1, n, 2)."""
-    curve = shape.tables[FIRST : SECOND + 1] @ points
-    x1, x2, y1, y2 = (curve[:, :, order, :, axis] for axis in range(2) for order in range(2))
-    square = x1 * x1 + y1 * y1
-    speed = np.sqrt(square)
-    return speed, (x1 * y2 - y1 * x2) / (square * speed)
-
-
-def _compliances(scene: Scene, given: Numbers) -> Array:
-    """Compliances (D, S, K) [1/N] of the axial forces; those of sliding go by the bending of the chord."""
-    stretched, slid = 1.0 / given.axial, given.longer**2 / given.bending
-    parts = [[part for part in each for _ in range(part.modes.count)] for each in _mixed_of(scene)]
-    soft = np.array([[part.axial_compliance for part in each] for each in parts])
-    slides = [isinstance(part.modes, SlideModes) for part in parts[0]]
-    return np.asarray(soft * np.where(slides, slid[..., None], stretched[..., None]))
-
-
-def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, force: Array) -> Array:
-    """The numbers of ``Strips`` of each design (D, S, 16 + 2 n)."""
-    scene, points = system.scene, given.points
-    numbers = np.zeros((*points.shape[:2], ON_POINTS + 2 * len(shape.order)), dtype=points.dtype)
-    mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
-    consistent = {e.strip: e for e in scene.of(Stretching)}
-    for s, strip in enumerate(scene.strips):
-        if strip.name in mixed:
-            numbers[:, s, STRAIN] = mixed[strip.name].natural_strain
-        if strip.name in consistent:
-            own = consistent[strip.name]
-            numbers[:, s, STRAIN] = own.natural_strain
-            numbers[:, s, STRETCHING] = own.axial_rigidity * given.axial[:, s] / force
-    chords = points[:, :, 1] - points[:, :, 0], points[:, :, -1] - points[:, :, -2]
-    for end, (place, carriers, chord) in enumerate(zip((ROOT, TIP), ends, chords, strict=True)):
-        numbers[..., place : place + 2] = points[:, :, -end]
-        for s, body in enumerate(carriers.tolist()):
-            if body >= len(scene.bodies):
-                numbers[:, s, place : place + 2] = 0.0
-            elif body >= 0:
-                numbers[:, s, place : place + 2] -= given.centres[:, body]
-        numbers[..., place + 2] = _angle(chord[..., 0], chord[..., 1])
-        numbers[..., REACH + end] = np.sqrt(np.sum(chord**2, axis=-1))
-    if system.weight.size:
-        heavier = given.area * given.longer / force[:, None]
-        for s, strip in enumerate(scene.strips):
-            dead = system.weight[system.layout.strip(strip.name)].reshape(-1, 2)
-            dead = np.concatenate((scene.weight_of(strip.name).ravel(), in_order(dead, shape).ravel()))
-            numbers[:, s, PER_U:] = dead * heavier[:, s, None]
-    return numbers
-
-
-def _angle(x: Array, y: Array) -> Array:
-    """Direction [rad] of vectors, exact to first order in what is along the imaginary axis."""
-    angle: Array = np.arctan2(y.real, x.real)
-    if not np.iscomplexobj(x):
-        return angle
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.asarray(angle + (y * cos - x * sin) / (x * cos + y * sin))
-
-
-def _starts(scene: Scene, ends: Ends, given: Numbers, modes: int) -> Array:
-    """States at rest (D, Y): poses, free ends among them, and of each strip points, reaches and forces."""
-    count = len(given.points)
-    bodies, strips = range(len(scene.bodies)), range(len(scene.strips))
-    turn, reach, forces = np.zeros((count, 1)), np.ones((count, 2)), np.zeros((count, modes))
-    parts = [part for b in bodies for part in (given.centres[:, b], turn)]
-    for s in strips:
-        for at, carriers in ((0, ends.roots), (-1, ends.tips)):
-            if carriers[s] >= len(bodies):
-                parts += [given.points[:, s, at], turn]
-    for s in strips:
-        parts += [given.points[:, s, 2:-2].reshape(count, -1), reach, forces]
-    return np.concatenate(parts, axis=1)
-
-
-def _units(bodies: int, length: Array) -> Array:
-    """Units of the poses of so many bodies (D, 3 B) [m, rad]."""
-    unit = np.ones((len(length), bodies, 3))
-    unit[:, :, :2] = length[:, None, None]
-    return unit.reshape(len(length), -1)
-
-
-def _forces(system: System, ends: Ends, length: Array, energy: Array) -> Array:
-    """Load and weight on the bodies (D, 2, 3 B)."""
+def _forces(system: System, ends: Ends) -> Array:
+    """Load and weight on the bodies (2, 3 B), free ends among them [N, N m]."""
     poses, loads = system.layout.poses, system.loads
-    bodies = max(len(system.scene.bodies), 1 + max(ends.roots.max(), ends.tips.max()))
-    force = np.zeros((2, 3 * bodies))
+    force = np.zeros((2, 3 * max(len(system.scene.bodies), 1 + max(ends.roots.max(), ends.tips.max()))))
     if loads.value.size:
         np.add.at(force[0], loads.coordinate - poses.start, loads.value)
     if system.weight.size:
         force[1, : poses.stop - poses.start] = system.weight[poses]
-    return np.asarray(force * (_units(bodies, length) / energy[:, None])[:, None])
-
-
-def _springs(system: System, length: Array, energy: Array) -> Array:
-    """Springs of each design (D, 3 B, 3 B), or (D, 0, 0)."""
-    if not system.springs.size:
-        return np.zeros((len(length), 0, 0))
-    unit = _units(len(system.springs) // 3, length)
-    return np.asarray(system.springs * (unit[:, :, None] * unit[:, None] / energy[:, None, None]))
-
-
-def _levers(system: System, given: Numbers) -> Array:
-    """Levers of frames (D, C, 2) from the centres of the bodies that carry them."""
-    begin, frames = system.layout.poses.start, system.frames.place.tolist()
-    levers = np.zeros((len(given.points), len(frames), 2), dtype=given.points.dtype)
-    for f, (at, by, _) in enumerate(frames):
-        levers[:, f] = given.centres[:, (at - begin) // 3]
-        if by >= 0:
-            levers[:, f] -= given.centres[:, (by - begin) // 3]
-    return levers
-
-
-def _orthonormal_modes(parts: list[list[MixedStretching]], basis: Bezier, speed: Array) -> Array:
-    """The scene's axial forces (D, S, K, K) by those of modes that are orthonormal along strips of a speed
-    (D, S, G), weighed by their compliance over that at the start.
-
-    Those of one distribution of the speed are kept: all straight strips have the same, but for round-off.
-    Designs have that of the first.
-    """
-    mean = speed.sum(axis=-1, keepdims=True) / speed.shape[-1]
-    alike = np.rint((speed[0] / mean[0]).real / ROUND_OFF)
-    kinds = [tuple((e.modes, e.taper) for e in each) for each in parts]
-    found = [_modes_of(each, basis, len(v), v.tobytes()) for each, v in zip(kinds, alike, strict=True)]
-    return np.asarray(np.array(found) / np.sqrt(mean)[..., None])
+    return force
 
 
 @lru_cache(maxsize=64)
 def _values(parts: tuple[AxialModes, ...], at: bytes) -> NDArray[np.float64]:
     """Values of the scene's modes at the numbers of a buffer (P, K)."""
-    return np.column_stack([modes.evaluate(np.frombuffer(at)) for modes in parts])
+    u = np.frombuffer(at)
+    return np.column_stack([np.zeros((len(u), 0)), *(modes.evaluate(u) for modes in parts)])
 
 
-@lru_cache(maxsize=64)
-def _modes_of(
-    parts: tuple[tuple[AxialModes, Taper | None], ...], basis: Bezier, points: int, speed: bytes
-) -> NDArray[np.float64]:
-    """The same of one strip of mean speed 1; speed: in ``ROUND_OFF``."""
-    u, weight = basis.gauss_rule(points)
-    weight = weight * (ROUND_OFF * np.frombuffer(speed))
-    back = np.zeros((0, 0))
-    for modes, taper in parts:
-        full, to_part = modes.evaluate(u), np.eye(modes.count)
-        soft = weight if taper is None else weight / taper.area(u)
-        if not isinstance(modes, SlideModes):  # the mean first
-            to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
-            full = full @ to_part
-        factor = np.linalg.cholesky(full.T @ (soft[:, None] * full))
-        k, m = len(back), modes.count
-        back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
-    return back
+@called()
+def _add_modes(d, s, given, common, gauss, own):
+    """Axial forces of the scene from those of modes that are orthonormal at the Gauss points, those of
+    stretching and of sliding each among themselves: with Cholesky's factor L of their products, L^-T."""
+    points, m = given.points[d, s], own.to_modes[d, s]
+    count, length = m.shape[0], own.length[d]
+    for i in range(count):
+        for j in range(count):
+            m[i, j] = 0.0
+    for p in range(common.modes.shape[0]):
+        x, y, _, _ = _derivatives(p, points, gauss)
+        speed = np.sqrt(x * x + y * y) / length
+        for i in range(count):
+            weight = speed * common.weight[s, int(i >= common.split), p]
+            for j in range(i + 1):
+                if (i < common.split) == (j < common.split):
+                    m[i, j] += weight * common.modes[p, i] * common.modes[p, j]
+    for j in range(count):
+        for k in range(j):
+            for i in range(j, count):
+                m[i, j] -= m[i, k] * m[j, k]
+        root = np.sqrt(m[j, j])
+        for i in range(j, count):
+            m[i, j] /= root
+    for j in range(count):
+        m[j, j] = 1.0 / m[j, j]
+        for i in range(j + 1, count):
+            total = m[i, j] * m[j, j]
+            for k in range(j + 1, i):
+                total += m[i, k] * m[k, j]
+            m[i, j] = -total / m[i, i]
+    for j in range(count):
+        for i in range(j):
+            m[i, j], m[j, i] = m[j, i], m[i, j]
+
+
+@called()
+def _derivatives(p, points, shape):
+    """x', y', x'', y'' of a curve at a point of the shape."""
+    x1 = y1 = x2 = y2 = points[0, 0] * 0.0
+    for i in range(shape.order.size):
+        x, y = points[shape.order[i], 0], points[shape.order[i], 1]
+        first, second = shape.tables[FIRST, p, i], shape.tables[SECOND, p, i]
+        x1 += first * x
+        y1 += first * y
+        x2 += second * x
+        y2 += second * y
+    return x1, y1, x2, y2
+
+
+@called()
+def _add_along(d, s, given, common, shape, own):
+    """What changes along a strip, behind ``_add_modes``."""
+    length, energy, to_modes = own.length[d], own.energy[d], own.to_modes[d, s]
+    width, thickness, bending = given.width[d, s], given.thickness[d, s], given.bending[d, s]
+    for p in range(own.rest.shape[2]):
+        row, source = own.along[d, s, p], common.along[d % common.along.shape[0], s, p]
+        x1, y1, x2, y2 = _derivatives(p, given.points[d, s], shape)
+        square = x1 * x1 + y1 * y1
+        speed = np.sqrt(square)
+        own.rest[d, s, p] = length * (x1 * y2 - y1 * x2) / (square * speed)
+        row[SPEED] = speed / length
+        row[CURVATURE] = own.rest[d, s, p] + source[CURVATURE] * length
+        row[RIGIDITY] = source[RIGIDITY] * bending / (energy * length)
+        row[CURL] = source[CURL] * width * width / (thickness * length)
+        for i in range(DROP, MODES):
+            row[i] = source[i]
+        for k in range(to_modes.shape[0]):
+            row[MODES + k] = 0.0
+            for i in range(k + 1):
+                row[MODES + k] += source[MODES + i] * to_modes[i, k]
+
+
+@called()
+def _add_end(d, s, body, place, end, given, common, own):
+    """Point and direction of an end of a strip in the frame of its body, and its reach; of a free end the
+    body's place at rest."""
+    points, numbers, length = given.points[d, s], own.numbers[d, s], own.length[d]
+    outer = (points.shape[0] - 1) * end
+    inner, sign = outer + 1 - 2 * end, 1.0 - 2.0 * end
+    x, y = sign * (points[inner, 0] - points[outer, 0]), sign * (points[inner, 1] - points[outer, 1])
+    angle = np.arctan2(y.real, x.real)
+    cos, sin = np.cos(angle), np.sin(angle)
+    numbers[place + 2] = angle + (y * cos - x * sin) / (x * cos + y * sin)  # of a complex step as well
+    numbers[REACH + end] = np.sqrt(x * x + y * y) / length
+    for k in range(2):
+        point = points[outer, k] / length
+        if body >= common.bodies:
+            own.start[d, 3 * body + k] = point
+            point *= 0.0
+        elif body >= 0:
+            point -= given.centres[d, body, k] / length
+        numbers[place + k] = point
+
+
+@called()
+def _add_bodies(d, given, common, own):
+    """What holds and loads the bodies, and where they are at rest."""
+    length, energy, frames = own.length[d], own.energy[d], common.frames
+    for i in range(common.force.shape[1]):
+        unit = length if i % 3 < 2 else 1.0
+        own.start[d, i] = 0.0
+        if i < 3 * common.bodies and i % 3 < 2:
+            own.start[d, i] = given.centres[d, i // 3, i % 3] / length
+        for k in range(2):
+            own.force[d, k, i] = common.force[k, i] * unit / energy
+    for i in range(common.springs.shape[0]):
+        for j in range(common.springs.shape[0]):
+            unit = (length if i % 3 < 2 else 1.0) * (length if j % 3 < 2 else 1.0)
+            own.springs[d, i, j] = common.springs[i, j] * unit / energy
+    for h in range(common.target.size):
+        own.target[d, h] = common.target[h] / (1.0 if common.turns[h] == 1 else length)
+    for f in range(frames.shape[0]):
+        for k in range(2):
+            own.levers[d, f, k] = given.centres[d, frames[f, 0] // 3, k] / length
+            if frames[f, 1] >= 0:
+                own.levers[d, f, k] -= given.centres[d, frames[f, 1] // 3, k] / length
+
+
+@kernel()
+def _fill(given, common, ends, shape, gauss, own):
+    """Fill the arrays of all designs."""
+    modes, n = common.modes.shape[1], given.points.shape[2]
+    for d in range(own.length.size):
+        _add_bodies(d, given, common, own)
+        length, force = own.length[d], own.energy[d] / own.length[d]
+        for s in range(ends.roots.size):
+            _add_modes(d, s, given, common, gauss, own)
+            _add_along(d, s, given, common, shape, own)
+            numbers, slid = own.numbers[d, s], given.longer[d, s] ** 2 / given.bending[d, s]
+            copy(common.numbers[s], numbers)
+            numbers[STRETCHING] *= given.axial[d, s] / force
+            for i in range(PER_U, numbers.size):
+                numbers[i] *= given.area[d, s] * given.longer[d, s] / force
+            _add_end(d, s, ends.roots[s], ROOT, 0, given, common, own)
+            _add_end(d, s, ends.tips[s], TIP, 1, given, common, own)
+            at = common.force.shape[1] + s * (2 * n - 6 + modes)
+            for i in range(2 * n - 8):
+                own.start[d, at + i] = given.points[d, s, 2 + i // 2, i % 2] / length
+            own.start[d, at + 2 * n - 8] = own.start[d, at + 2 * n - 7] = 1.0
+            for k in range(modes):
+                softer = slid if k >= common.split else 1.0 / given.axial[d, s]
+                own.compliance[d, s, k] = common.compliance[s, k] * softer * force
+                own.start[d, at + 2 * n - 6 + k] = 0.0

@@ -4,11 +4,12 @@ tangent with nothing condensed, and how control points move."""
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.compile import System
 from spline_model.effects import MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.frames import carry, fold, fold_tangent
@@ -30,69 +31,88 @@ from spline_model.strip.points import evaluate_points, evaluate_residual, forces
 Array = NDArray[Any]
 
 
+class _Rows(NamedTuple):
+    """Where the unknowns of a scene have what its elements know.
+
+    poses: of the first body; strips (S,) first control points; modes (S, K) axial forces; clamps (S, 2) at
+    root and tip, -1 of none; drives (D,); turns (D,): 1 of a torque.
+    """
+
+    poses: int
+    strips: NDArray[np.int64]
+    modes: NDArray[np.int64]
+    clamps: NDArray[np.int64]
+    drives: NDArray[np.int64]
+    turns: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, system: System) -> Self:
+        """Those of a system."""
+        scene, layout = system.scene, system.layout
+        modes: dict[str, list[int]] = {strip.name: [] for strip in scene.strips}
+        for i, effect in enumerate(scene.of(MixedStretching)):
+            rows = layout.axial_modes(i)
+            modes[effect.strip] += range(rows.start, rows.stop)
+        ends = [[scene.clamps.get((name, end)) for end in ("start", "end")] for name in modes]
+        return cls(
+            poses=layout.poses.start,
+            strips=np.array([layout.strip(name).start for name in modes]),
+            modes=np.array(list(modes.values()), dtype=np.int64),
+            clamps=np.array([[-1 if rows is None else rows.start for rows in each] for each in ends]),
+            drives=system.drives.row,
+            turns=system.drives.turns,
+        )
+
+
+def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:
+    """Return the scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
+
+    What the clamps do to the strips is what holds them in equilibrium.
+    """
+    rows, arrays = model.system.once("rows", _Rows.of), model.arrays()
+    z = np.zeros((len(y), model.system.layout.size), dtype=y.dtype)
+    poses = 3 * len(model.system.scene.bodies)
+    _fill_unknowns(y, reaction, poses, rows, model.to_modes, model.length, model.energy, arrays, z)
+    return z
+
+
 @kernel()
-def _place_all(y, arms, bodies, shape, strips, local, out, points, forces):
-    """Frames in y, control points (S, G, 2 n) and what the clamps do to the strips (S, G, 2, 3).
+def _fill_unknowns(y, reaction, poses, rows, to_modes, length, energy, arrays, z):
+    """Frames in y, and the scene's unknowns.
 
     A clamp's force is the sum of the gradient at its two control points; its moment is the gradient at the
     inner one across its direction.
     """
+    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
+    local, space, force = arrays.local, arrays.space, energy / length
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
     for row in range(y.shape[0]):
-        carry(y[row], bodies.frames, arms)
+        state, into = y[row], z[row]
+        carry(state, bodies.frames, space.vectors[ARMS])
+        for i in range(poses):
+            into[rows.poses + i] = state[i] * (length if i % 3 < 2 else 1.0)
         for s in range(strips.roots.size):
             at = bodies.rest.size + s * (own + modes)
-            state = y[row]
+            a = state[at + own : at + own + modes]
             place_points(s, state[at : at + own], state, strips, local)
-            evaluate_residual(s, state[at + own : at + own + modes], n, shape, strips, local, out)
+            evaluate_residual(s, a, n, shape, strips, local, space.out)
             p, g = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
             for i in range(2 * n):
-                points[row, s, i] = p[i]
+                into[rows.strips[s] + 2 * shape.order[i // 2] + i % 2] = p[i] * length
+            for k in range(modes):
+                into[rows.modes[s, k]] = 0.0
+                for j in range(modes):
+                    into[rows.modes[s, k]] += to_modes[s, k, j] * a[j] * force
             for end in range(2):
-                inner = 2 * n - 8 + 2 * end
-                outer = 2 * n - 2 - 2 * end
-                forces[row, s, end, 0] = g[inner] + g[outer]
-                forces[row, s, end, 1] = g[inner + 1] + g[outer + 1]
-                forces[row, s, end, 2] = (p[inner] - p[outer]) * g[inner + 1] - (
-                    p[inner + 1] - p[outer + 1]
-                ) * g[inner]
-
-
-def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None = None) -> Array:
-    """Return the scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
-
-    clamped (S, G, 2, 3): what the clamps do to the strips; by default what holds them in equilibrium.
-    """
-    strips, shape, n = model.strips, model.shape, len(model.shape.order)
-    points = np.zeros((len(y), len(strips.roots), 2 * n), dtype=y.dtype)
-    forces = np.zeros((len(y), len(strips.roots), 2, 3), dtype=y.dtype)
-    out = np.zeros(5, dtype=y.dtype)
-    _place_all(y, np.zeros_like(y[0]), model.bodies, shape, strips, model.local(), out, points, forces)
-    if clamped is not None:
-        forces = clamped
-    system = model.system
-    scene, layout = system.scene, system.layout
-    z = np.zeros((len(y), layout.size), dtype=y.dtype)
-    for i, body in enumerate(scene.bodies):
-        z[:, layout.body(body.name)] = y[:, 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
-    unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
-    for s, strip in enumerate(scene.strips):
-        in_order = np.empty((len(y), n, 2), dtype=y.dtype)
-        in_order[:, shape.order] = points[:, s].reshape(len(y), n, 2)
-        z[:, layout.strip(strip.name)] = in_order.reshape(len(y), -1) * model.length
-        force = y[:, model.places(s)[1]] @ model.to_modes[s].T * (model.energy / model.length)
-        done = 0
-        for i, effect in enumerate(scene.of(MixedStretching)):
-            if effect.strip == strip.name:
-                z[:, layout.axial_modes(i)] = force[:, done : done + effect.modes.count]
-                done += effect.modes.count
-        for end, place in (("start", 0), ("end", 1)):
-            if (strip.name, end) in scene.clamps:
-                z[:, scene.clamps[strip.name, end]] = forces[:, s, place] * unit
-    drives = system.drives
-    z[:, drives.row] = reaction * unit[2 * drives.turns]
-    return z
+                inner, outer, clamp = 2 * n - 8 + 2 * end, 2 * n - 2 - 2 * end, rows.clamps[s, end]
+                if clamp >= 0:
+                    x, y1 = p[inner] - p[outer], p[inner + 1] - p[outer + 1]
+                    into[clamp] = (g[inner] + g[outer]) * force
+                    into[clamp + 1] = (g[inner + 1] + g[outer + 1]) * force
+                    into[clamp + 2] = (x * g[inner + 1] - y1 * g[inner]) * energy
+        for d in range(rows.drives.size):
+            into[rows.drives[d]] = reaction[row, d] * (energy if rows.turns[d] == 1 else force)
 
 
 def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
