@@ -26,7 +26,7 @@ from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, load_at, newton
-from spline_model.motion.strip import keep_curve, lost_between, quadratic
+from spline_model.motion.strip import keep_curve, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
@@ -93,9 +93,7 @@ def _accept(time, h, active, state, arrays, masses, work):
     own, modes = work.line.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
         at, move = masses.inertia.size + s * (own + modes) + own, work.move[s]
-        if masses.relaxation[s] > 0.0:
-            totals[1] += lost_between(s, h, state.curve[s], strips, arrays.shape, masses.relaxation[s], local)
-        totals[1] += quadratic(masses.damping[s], move) / h
+        totals[1] += work.lost[s] + quadratic(masses.damping[s], move) / h
         for i in range(move.size):
             mean = move[i] / h
             state.acceleration[s, i] = 2.0 * (mean - state.velocity[s, i]) / h
