@@ -139,10 +139,12 @@ class Scratch(NamedTuple):
 
     dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; y: of the step's end; move:
     of the control points; mean, end: maps D, and derivatives at the end; steady, force, stiff: inertia, drag
-    and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
-    along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
-    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of
-    frames, see ``spline_model.motion.bodies``; follow: values of followers.
+    and loads; t: the tangent in x', y', x'', y'' at a Gauss point; lost: by the strips, over the step; blocks
+    xx, xy, yx, yy of the tangent, a line of them; half: these in control points, ends' rows in coordinates;
+    pull, along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the
+    strips condensed; moved: see ``spline_model.motion.step``; load, turned: loads and followers on bodies;
+    system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of frames; follow:
+    values of followers.
     """
 
     dy: Annotated[Array, "Y"]
@@ -167,6 +169,8 @@ class Scratch(NamedTuple):
     tangent: Annotated[Array, "Q' Q'"]
     residual: Annotated[Array, "Y"]
     reduced: Annotated[Array, "Q'"]
+    moved: Annotated[Array, "4 Q"]
+    turned: Annotated[Array, "Q"]
     load: Annotated[Array, "Q"]
     system: Annotated[Array, "Q' Q'"]
     x: Annotated[Array, "Q'"]

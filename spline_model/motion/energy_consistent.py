@@ -19,13 +19,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
-from spline_model.motion.bodies import turned
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
-from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, load_at, newton
+from spline_model.motion.step import FOLDS, HALVED, MOVED, REFUSED, STEPS, WHOLE, newton
 from spline_model.motion.strip import keep_curve, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
@@ -60,30 +58,15 @@ def forward(y, arrays, masses):
 
 
 @part()
-def _count_work(time, h, active, state, masses, work):
-    """What loads and drives did in the solved step."""
-    dy, totals = work.dy, state.totals
-    for f in range(masses.load_at.size):
-        i = masses.load_at[f]
-        if masses.loads.turns[f] == FOLLOWER:
-            if i % 3 == 0:
-                x, y = turned(f, state, masses, work)
-                totals[0] += x * dy[i] + y * dy[i + 1]
-            continue
-        moved = 2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i]
-        totals[0] += load_at(f, time + 0.5 * h, masses) * moved
+def _accept(h, active, state, arrays, masses, work):
+    """Take the solved step: energy balance of work and losses, velocities, coordinates."""
+    strips, local, dy, totals = arrays.strips, arrays.local, work.dy, state.totals
     for d in range(masses.drive_at.size):
         if active[d] == 1:
             totals[0] += work.residual[masses.drive_at[d]] * dy[masses.drive_at[d]]
-
-
-@part()
-def _accept(time, h, active, state, arrays, masses, work):
-    """Take the solved step: energy balance of work and losses, velocities, coordinates."""
-    strips, local, dy, totals = arrays.strips, arrays.local, work.dy, state.totals
-    _count_work(time, h, active, state, masses, work)
     for i in range(masses.inertia.size):
         mean = dy[i] / h
+        totals[0] += work.load[i] * work.moved[MOVED, i] + work.turned[i] * dy[i]
         totals[1] += h * masses.drag[i] * mean * mean
         state.push[i] = 2.0 * (mean - state.rate[i]) / h
         state.rate[i] = 2.0 * mean - state.rate[i]
@@ -167,7 +150,7 @@ def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance
         if not solved or not forward(work.y, arrays, masses):
             counters[REFUSED] = FOLDS if solved else 0
             return k
-        _accept(now, step, active, state, arrays, masses, work)
+        _accept(step, active, state, arrays, masses, work)
         counters[STEPS] += 1
         if (k + 1) % every == 0:
             store(state, arrays, masses, records[(k + 1) // every - begin // every - 1])
