@@ -25,7 +25,7 @@ from spline_model.errors import (
     require_positive,
 )
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.motion import energy_consistent, leapfrog, quasi_static
+from spline_model.motion import energy_consistent, leapfrog, massless
 from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
@@ -196,7 +196,7 @@ def solve_motion(
 def _energy(start: Start) -> Moves:
     """The default scheme; with massless strips only the bodies are dynamic."""
     start.motion.require_material()
-    return quasi_static.Stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
+    return massless.Stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
 
 
 INTEGRATORS: dict[str, Scheme] = {"energy": _energy, leapfrog.NAME: leapfrog.Stepper}

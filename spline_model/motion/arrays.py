@@ -123,15 +123,11 @@ class State(NamedTuple):
     def of(cls, sizes: dict[str, int]) -> State:
         """Return one at zero; sizes: of what the letters stand for."""
         state = zeros(cls, sizes)
-        record = np.zeros(sum(each.size for each in state[:RECORDED]))
-        parts = dict(zip(cls._fields, state.parted(record[None]), strict=False))
-        return state._replace(record=record, **{name: each[0] for name, each in parts.items()})
-
-    def parted(self, records: Array) -> list[Array]:
-        """Return views of y, rate and velocity of records (R, W), in SI units (R, ...)."""
-        ends = np.cumsum([each.size for each in self[:RECORDED]])
-        parts = zip(np.split(records, ends[:-1], axis=1), self, strict=False)
-        return [each.reshape(len(records), *like.shape) for each, like in parts]
+        leading = state[:RECORDED]
+        record = np.zeros(sum(each.size for each in leading))
+        parts = np.split(record, np.cumsum([each.size for each in leading])[:-1])
+        y, rate, velocity = (part.reshape(each.shape) for part, each in zip(parts, leading, strict=True))
+        return state._replace(record=record, y=y, rate=rate, velocity=velocity)
 
 
 class Scratch(NamedTuple):
@@ -211,43 +207,3 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
     sizes |= {"F": len(masses.load_at), "Y": model.size, "E": 2 * n + masses.outer}
     return sizes | {"Q'": q + s * masses.outer}
-
-
-class Poses(NamedTuple):
-    """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
-
-    y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
-    slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
-    the curvature that the tangent of the last step, of length last [s], neglects; system, x: what is solved;
-    still: what has no mass.
-    """
-
-    y: Annotated[Array, "Y"]
-    rate: Annotated[Array, "Q"]
-    energy: Annotated[Array, "2"]
-    pull: Annotated[Array, "Q'"]
-    next: Annotated[Array, "Q'"]
-    slope: Annotated[Array, "Q'"]
-    totals: Annotated[Array, "2"]
-    trial: Annotated[Array, "Y"]
-    dx: Annotated[Array, "Q"]
-    load: Annotated[Array, "Q"]
-    ahead: Annotated[Array, "Y"]
-    bent: Annotated[Array, "Y"]
-    last: Annotated[Array, "1"]
-    system: Annotated[Array, "Q' Q'"]
-    x: Annotated[Array, "Q'"]
-    still: Annotated[Places, "0"]
-
-    @classmethod
-    def of(cls, y: Array, rate: Array, masses: Masses, all_bodies: int) -> Poses:
-        """Return a state with these coordinates y (Y,) [m, rad, N] and velocities rate (Y,).
-
-        all_bodies: number of bodies, driven ones included.
-        """
-        light = np.flatnonzero(masses.inertia == 0.0)
-        still = [*np.setdiff1d(light, masses.frames.carried), *range(len(rate), all_bodies)]
-        poses = zeros(cls, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
-        return poses._replace(
-            y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
-        )
