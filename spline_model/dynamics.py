@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import FIRST, MOST
-from spline_model.accurate_motion import solve_accurately
+from spline_model.accurate_motion import Task, solve_accurately, starts_still, unresolved, with_companion
 from spline_model.compile import compile_scene
 from spline_model.confirmed import MORE
-from spline_model.content import Task, starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
