@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import FIRST, MOST
-from spline_model.accurate_motion import solve_accurately
+from spline_model.accurate_motion import Task, solve_accurately, starts_still, unresolved, with_companion
 from spline_model.compile import compile_scene
 from spline_model.confirmed import MORE
-from spline_model.content import Task, starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
@@ -25,7 +24,7 @@ from spline_model.errors import (
     require_positive,
 )
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.motion import energy_consistent, leapfrog, quasi_static
+from spline_model.motion import energy_consistent, leapfrog, massless
 from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
@@ -195,7 +194,7 @@ def solve_motion(
 def _energy(start: Start) -> Moves:
     """The default scheme; with massless strips only the bodies are dynamic."""
     start.motion.require_material()
-    return quasi_static.Stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
+    return massless.Stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
 
 
 INTEGRATORS: dict[str, Scheme] = {"energy": _energy, leapfrog.NAME: leapfrog.Stepper}

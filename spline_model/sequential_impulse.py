@@ -25,8 +25,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.accurate_motion import STEPS_PER_PERIOD
 from spline_model.compile import compile_scene
-from spline_model.content import STEPS_PER_PERIOD
 from spline_model.dynamics import Asked, moved
 from spline_model.errors import (
     InvalidParameter,

@@ -114,7 +114,7 @@ class State(NamedTuple):
     velocity: Annotated[Array, "S 2n"]
     acceleration: Annotated[Array, "S 2n"]
     push: Annotated[Array, "Q"]
-    curve: Annotated[Array, "S 5 G"]
+    curve: Annotated[Array, "S G 5"]
     map: Annotated[Array, "S 16"]
     totals: Annotated[Array, "2"]
     record: Annotated[Array, "0"]
@@ -123,15 +123,11 @@ class State(NamedTuple):
     def of(cls, sizes: dict[str, int]) -> State:
         """Return one at zero; sizes: of what the letters stand for."""
         state = zeros(cls, sizes)
-        record = np.zeros(sum(each.size for each in state[:RECORDED]))
-        parts = dict(zip(cls._fields, state.parted(record[None]), strict=False))
-        return state._replace(record=record, **{name: each[0] for name, each in parts.items()})
-
-    def parted(self, records: Array) -> list[Array]:
-        """Return views of y, rate and velocity of records (R, W), in SI units (R, ...)."""
-        ends = np.cumsum([each.size for each in self[:RECORDED]])
-        parts = zip(np.split(records, ends[:-1], axis=1), self, strict=False)
-        return [each.reshape(len(records), *like.shape) for each, like in parts]
+        leading = state[:RECORDED]
+        record = np.zeros(sum(each.size for each in leading))
+        parts = np.split(record, np.cumsum([each.size for each in leading])[:-1])
+        y, rate, velocity = (part.reshape(each.shape) for part, each in zip(parts, leading, strict=True))
+        return state._replace(record=record, y=y, rate=rate, velocity=velocity)
 
 
 class Scratch(NamedTuple):
@@ -139,10 +135,12 @@ class Scratch(NamedTuple):
 
     dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; y: of the step's end; move:
     of the control points; mean, end: maps D, and derivatives at the end; steady, force, stiff: inertia, drag
-    and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
-    along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
-    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of
-    frames, see ``spline_model.motion.bodies``; follow: values of followers.
+    and loads; t: the tangent in x', y', x'', y'' at a Gauss point; lost: by the strips, over the step; blocks
+    xx, xy, yx, yy of the tangent, a line of them; half: these in control points, ends' rows in coordinates;
+    pull, along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the
+    strips condensed; moved: see ``spline_model.motion.step``; load, turned: loads and followers on bodies;
+    system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of frames; follow:
+    values of followers.
     """
 
     dy: Annotated[Array, "Y"]
@@ -153,9 +151,11 @@ class Scratch(NamedTuple):
     steady: Annotated[Array, "S 2n"]
     force: Annotated[Array, "S 2n"]
     stiff: Annotated[Array, "S n n"]
+    t: Annotated[Array, "16"]
+    lost: Annotated[Array, "S"]
     blocks: Annotated[Array, "4 nn"]
     line: Annotated[Array, "2n"]
-    half: Annotated[Array, "2n E"]
+    half: Annotated[Array, "2n 2n"]
     pull: Annotated[Array, "K 2n"]
     along: Annotated[Array, "K 2n"]
     g: Annotated[Array, "S E"]
@@ -165,11 +165,12 @@ class Scratch(NamedTuple):
     tangent: Annotated[Array, "Q' Q'"]
     residual: Annotated[Array, "Y"]
     reduced: Annotated[Array, "Q'"]
+    moved: Annotated[Array, "4 Q"]
+    turned: Annotated[Array, "Q"]
     load: Annotated[Array, "Q"]
     system: Annotated[Array, "Q' Q'"]
     x: Annotated[Array, "Q'"]
     change: Annotated[Array, "E"]
-    energies: Annotated[Array, "5"]
     free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
     arms: Annotated[Array, "Q"]
@@ -206,43 +207,3 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
     sizes |= {"F": len(masses.load_at), "Y": model.size, "E": 2 * n + masses.outer}
     return sizes | {"Q'": q + s * masses.outer}
-
-
-class Poses(NamedTuple):
-    """State of the bodies, Q coordinates and Q' with the axial forces beside them, and working arrays.
-
-    y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
-    slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
-    the curvature that the tangent of the last step, of length last [s], neglects; system, x: what is solved;
-    still: what has no mass.
-    """
-
-    y: Annotated[Array, "Y"]
-    rate: Annotated[Array, "Q"]
-    energy: Annotated[Array, "2"]
-    pull: Annotated[Array, "Q'"]
-    next: Annotated[Array, "Q'"]
-    slope: Annotated[Array, "Q'"]
-    totals: Annotated[Array, "2"]
-    trial: Annotated[Array, "Y"]
-    dx: Annotated[Array, "Q"]
-    load: Annotated[Array, "Q"]
-    ahead: Annotated[Array, "Y"]
-    bent: Annotated[Array, "Y"]
-    last: Annotated[Array, "1"]
-    system: Annotated[Array, "Q' Q'"]
-    x: Annotated[Array, "Q'"]
-    still: Annotated[Places, "0"]
-
-    @classmethod
-    def of(cls, y: Array, rate: Array, masses: Masses, all_bodies: int) -> Poses:
-        """Return a state with these coordinates y (Y,) [m, rad, N] and velocities rate (Y,).
-
-        all_bodies: number of bodies, driven ones included.
-        """
-        light = np.flatnonzero(masses.inertia == 0.0)
-        still = [*np.setdiff1d(light, masses.frames.carried), *range(len(rate), all_bodies)]
-        poses = zeros(cls, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
-        return poses._replace(
-            y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)
-        )

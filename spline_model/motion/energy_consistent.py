@@ -14,23 +14,19 @@ Source: Gonzalez, Time integration and discrete Hamiltonian systems, J Nonlinear
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
-from spline_model.motion.bodies import turned
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
-from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, load_at, newton
-from spline_model.motion.strip import keep_curve, lost_between, quadratic
+from spline_model.motion.step import FOLDS, HALVED, MOVED, REFUSED, STEPS, WHOLE, newton
+from spline_model.motion.strip import keep_curve, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
-from spline_model.reduced.model import from_unknowns, require_reduced
+from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
-from spline_model.scene import Scene
 from spline_model.strip.compiled import copy, kernel, part
 from spline_model.strip.element import SPEED, SPEED_AT
 from spline_model.strip.ends import place_points
@@ -60,30 +56,15 @@ def forward(y, arrays, masses):
 
 
 @part()
-def _count_work(time, h, active, state, masses, work):
-    """What loads and drives did in the solved step."""
-    dy, totals = work.dy, state.totals
-    for f in range(masses.load_at.size):
-        i = masses.load_at[f]
-        if masses.loads.turns[f] == FOLLOWER:
-            if i % 3 == 0:
-                x, y = turned(f, state, masses, work)
-                totals[0] += x * dy[i] + y * dy[i + 1]
-            continue
-        moved = 2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i]
-        totals[0] += load_at(f, time + 0.5 * h, masses) * moved
+def _accept(h, active, state, arrays, masses, work):
+    """Take the solved step: energy balance of work and losses, velocities, coordinates."""
+    strips, local, dy, totals = arrays.strips, arrays.local, work.dy, state.totals
     for d in range(masses.drive_at.size):
         if active[d] == 1:
             totals[0] += work.residual[masses.drive_at[d]] * dy[masses.drive_at[d]]
-
-
-@part()
-def _accept(time, h, active, state, arrays, masses, work):
-    """Take the solved step: energy balance of work and losses, velocities, coordinates."""
-    strips, local, dy, totals = arrays.strips, arrays.local, work.dy, state.totals
-    _count_work(time, h, active, state, masses, work)
     for i in range(masses.inertia.size):
         mean = dy[i] / h
+        totals[0] += work.load[i] * work.moved[MOVED, i] + work.turned[i] * dy[i]
         totals[1] += h * masses.drag[i] * mean * mean
         state.push[i] = 2.0 * (mean - state.rate[i]) / h
         state.rate[i] = 2.0 * mean - state.rate[i]
@@ -93,9 +74,7 @@ def _accept(time, h, active, state, arrays, masses, work):
     own, modes = work.line.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
         at, move = masses.inertia.size + s * (own + modes) + own, work.move[s]
-        if masses.relaxation[s] > 0.0:
-            totals[1] += lost_between(s, h, state.curve[s], strips, arrays.shape, masses.relaxation[s], local)
-        totals[1] += quadratic(masses.damping[s], move) / h
+        totals[1] += work.lost[s] + quadratic(masses.damping[s], move) / h
         for i in range(move.size):
             mean = move[i] / h
             state.acceleration[s, i] = 2.0 * (mean - state.velocity[s, i]) / h
@@ -169,26 +148,27 @@ def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance
         if not solved or not forward(work.y, arrays, masses):
             counters[REFUSED] = FOLDS if solved else 0
             return k
-        _accept(now, step, active, state, arrays, masses, work)
+        _accept(step, active, state, arrays, masses, work)
         counters[STEPS] += 1
         if (k + 1) % every == 0:
             store(state, arrays, masses, records[(k + 1) // every - begin // every - 1])
     return end
 
 
-def standing(scene: Scene, strips: Any, y: Array, s: int) -> str:
+def standing(model: Reduced, y: Array, s: int) -> str:
     """At how many degrees the bodies stand that a strip joins, in a state y (Y,)."""
-    bodies = [i for i in (strips.roots[s], strips.tips[s]) if 0 <= i < len(scene.bodies)]
+    scene, ends = model.system.scene, (model.strips.roots[s], model.strips.tips[s])
+    bodies = [i for i in ends if 0 <= i < len(scene.bodies)]
     angles = [f"{math.degrees(y[3 * i + 2]):.3g} degrees of {scene.bodies[i].name}" for i in bodies]
     return " and ".join(angles) or "its free end"
 
 
-def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int) -> str:
+def why(counters: NDArray[np.int64], model: Reduced, y: Array, s: int) -> str:
     """Return why a step from y (Y,) [m, rad, N] was given up, by the counted events, and what helps.
 
     s: the first strip to fold.
     """
-    strip, where = scene.strips[s], standing(scene, strips, y, s)
+    strip, where = model.system.scene.strips[s], standing(model, y, s)
     helps = f"take a shorter step, or more control points than {strip.basis.control_points}"
     if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
         return f"steps at {where} are halved too often; {helps}"
@@ -209,16 +189,20 @@ class Stepper(Moves):
     def __init__(self, start: Start) -> None:
         self.motion = start.motion
         self.model = model = require_reduced(self.motion.system)
-        self._arrays, self._masses = model.arrays(), Masses.of(self.motion, model)
-        self.counters = np.zeros(6, dtype=np.int64)
-        self.active = np.zeros(self.motion.drives.row.size, dtype=np.int64)
-        sizes = sizes_of(model, self._masses)
-        self.state, self._work = State.of(sizes), zeros(Scratch, sizes)
+        self._begin()
+        self.state, self._work = State.of(self._sizes), zeros(Scratch, self._sizes)
         self.state.y[:] = from_unknowns(model, start.z)
         self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
         self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
         self.width = self.state.record.size + ENERGIES
         look(self.state, self._arrays)
+
+    def _begin(self) -> None:
+        """Make what a motion of the model has at all times."""
+        self._arrays, self._masses = self.model.arrays(), Masses.of(self.motion, self.model)
+        self._sizes = sizes_of(self.model, self._masses)
+        self.counters = np.zeros(6, dtype=np.int64)
+        self.active = np.zeros(self._sizes["D"], dtype=np.int64)
 
     def _rates(self, given: Array) -> tuple[Array, Array]:
         """Rates of the bodies (Q,) and control points (S, 2 n) from those (Q,) of the scene."""
@@ -243,19 +227,20 @@ class Stepper(Moves):
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Return unknowns (R, N) [m, rad, N] and velocities (R, Q) [m/s, rad/s] of records (R, W).
 
-        Axial forces are the means of the steps that end there. Multipliers are zero: clamps are solved.
+        Axial forces are the means of the steps that end there. With moving strips multipliers are zero:
+        clamps are solved.
         """
-        model, layout = self.model, self.model.system.layout
-        y, rate, velocity = self.state.parted(records[:, :-ENERGIES])
-        z = unknowns_of(model, np.ascontiguousarray(y), np.zeros((len(y), len(self.active))))
-        z[:, layout.multiplier_start :] = 0.0
+        model, layout, size = self.model, self.model.system.layout, self.model.size
+        poses, points = 3 * len(layout.bodies), records[:, size + self._sizes["Q"] : -ENERGIES]
+        z = unknowns_of(model, records[:, :size].copy(), np.zeros((len(records), len(self.active))))
         v = np.zeros((len(records), layout.coordinate_count))
-        poses = 3 * len(layout.bodies)
-        v[:, layout.poses] = rate[:, :poses] * np.tile(model.system.scales.pose, poses // 3)
+        v[:, layout.poses] = records[:, size : size + poses] * np.tile(model.system.scales.pose, poses // 3)
+        if not points.size:
+            return z, v
+        z[:, layout.multiplier_start :] = 0.0
+        velocity = points.reshape(len(z), len(layout.strips), -1, 2) * model.length
         for s, name in enumerate(layout.strips):
-            points = np.empty((len(v), len(model.shape.order), 2))
-            points[:, model.shape.order] = velocity[:, s].reshape(points.shape) * model.length
-            v[:, layout.strip(name)] = points.reshape(len(v), -1)
+            v[:, layout.strip(name)].reshape(len(z), -1, 2)[:, model.shape.order] = velocity[:, s]
         return z, v
 
     def reason(self) -> str:
@@ -264,7 +249,7 @@ class Stepper(Moves):
         slowest = np.nan_to_num(self._arrays.local.lanes[:, SPEED_AT] / model.strips.speed).min(axis=1)
         ends = self._work.y[len(model.bodies.rest) :].reshape(len(slowest), -1)[:, own - 2 : own]
         slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
-        return why(self.counters, model.system.scene, model.strips, self.state.y, int(np.argmin(slowest)))
+        return why(self.counters, model, self.state.y, int(np.argmin(slowest)))
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""

@@ -14,8 +14,9 @@ from spline_model.effects import Bending, MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
-from spline_model.frames import carry, fold_tangent, spread
-from spline_model.paper import assemble, clamps_of, evaluate, room, strips_of
+from spline_model.paper import evaluate, strips_of
+from spline_model.reduced.model import from_unknowns, require_reduced
+from spline_model.reduced.states import coordinates_by
 from spline_model.solution import Later
 from spline_model.strip.compiled import part
 from spline_model.tables import DriveTable, LoadTable
@@ -87,13 +88,10 @@ class Motion:
         A step that ends there keeps its order, and a corner of an active drive, which is a jump of
         its rate, does not ring on as it would in a step across it.
         """
-        drives = self.drives
-        times = np.concatenate((drives.begin, drives.until, drives.times, self.loads.times))
-        inside = np.sort(times[(times > SAME * step) & (times < duration - SAME * step)])
-        if not inside.size:
-            return []
-        apart = np.diff(inside, prepend=-np.inf) > SAME * step
-        return [float(time) for time in inside[apart]]
+        drives, close = self.drives, SAME * step
+        times = np.sort(np.concatenate((drives.begin, drives.until, drives.times, self.loads.times)))
+        inside = times[(times > close) & (times < duration - close)]
+        return [float(time) for time in inside[np.diff(inside, prepend=-np.inf) > close]]
 
     def drives_at(self, time: float) -> Places:
         """Return 1 for each drive row (D,) that holds at that time [s], 0 for the others."""
@@ -116,27 +114,20 @@ class Motion:
         the drives' rates over the next ``span`` [s]: the effect of impulses along the constraints,
         an inelastic catch.
         """
-        drives, held = self.drives, np.flatnonzero(active)
+        drives, held, mass = self.drives, np.flatnonzero(active), self.system.mass
         if not held.size:
             return v, 0.0
-        size, count = z.size, v.size
-        gradient, hessian = np.empty(size), np.empty((size, size))
-        strips, clamps = strips_of(self.system), clamps_of(self.system)
-        assemble(z, strips, clamps, gradient, hessian, room(strips))
-        frames, arms = self.system.frames, np.zeros(size)
-        carry(z, frames, arms)
-        fold_tangent(hessian, 0.0, frames, arms, arms)
-        clamped = clamps.row[:, None] + np.arange(3)
-        rows = np.concatenate((clamped.ravel(), drives.row[held])).astype(int)
-        hessian[drives.row, drives.coordinate] = -1.0
-        jacobian = -hessian[rows][:, :count]
-        rate = np.zeros(len(rows))
-        for i, d in enumerate(held):
-            change = factor_of(d, time + span, drives) - factor_of(d, time, drives)
-            rate[len(rows) - len(held) + i] = change / span * drives.target[d]
-        caught = v + self._constrained(jacobian, np.zeros(count), rate - jacobian @ v)[0]
-        spread(caught, frames, arms)
-        return caught, 0.5 * float(v @ self.system.mass @ v - caught @ self.system.mass @ caught)
+        model, at = require_reduced(self.system), drives.coordinate[held]
+        places = at - self.system.layout.poses.start
+        by = coordinates_by(model, from_unknowns(model, z))
+        before, after = ([factor_of(d, instant, drives) for d in held] for instant in (time, time + span))
+        rates = np.subtract(after, before) / span * drives.target[held]
+        moved = by @ np.linalg.lstsq(by, v, rcond=None)[0]
+        moved += by[:, places] @ ((rates - moved[at]) / by[at, places])
+        free = np.delete(by, places, axis=1)
+        answer = np.linalg.lstsq(free.T @ mass @ free, free.T @ mass @ (v - moved), rcond=1e-14)[0]
+        caught = moved + free @ answer
+        return caught, 0.5 * float(v @ mass @ v - caught @ mass @ caught)
 
     def accelerated(self, z: Array, v: Array) -> tuple[Array, Array]:
         """Consistent acceleration (Q,) and unknowns (N,) at a state, z (Q or more,), with velocity v (Q,).
@@ -145,52 +136,31 @@ class Motion:
         differentiated twice: Psi_q a = -(Psi_q v)_q v, the right side by a central difference of
         Psi_q along v, exact at rest. Loads are those of the motion's instant 0.
         """
-        system, layout = self._with_first_loads(), self.system.layout
-        q, size, unit = slice(0, layout.coordinate_count), layout.size, system.scales.unit
-        gradient, hessian = np.empty(size), np.empty((size, size))
-        free, rows = self._unconstrained(system, z, gradient, hessian)
+        system, mass = self._with_first_loads(), self.system.mass
+        count, end, size = len(mass), system.layout.multiplier_start, system.layout.size
+        unit, gradient, hessian = system.scales.unit[:count], np.empty(size), np.empty((size, size))
+        free = np.append(z[:count], np.zeros(size - count))
         evaluate(system, free, 1.0, gradient, hessian)
-        jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
-
-        drift, speed = np.zeros(len(rows)), np.abs(v / unit[q]).max()
+        free[count:end] = self.rigidity @ gradient[count:end]
+        evaluate(system, free, 1.0, gradient, hessian)
+        rows = np.append(count + np.flatnonzero(np.diag(self.rigidity) == 0.0), np.arange(end, size))
+        jacobian, force, drift = hessian[rows][:, :count].copy(), -gradient[:count], np.zeros(len(rows))
+        speed = np.abs(v / unit).max()
         if speed > 0:
             step = 1e-4 / speed
             for sign in (1.0, -1.0):
                 moved = free.copy()
-                moved[q] += sign * step * v
+                moved[:count] += sign * step * v
                 evaluate(system, moved, 1.0, gradient, hessian)
-                drift += sign * (hessian[rows][:, q] @ v) / (2 * step)
-
-        acceleration, free[rows] = self._constrained(jacobian, force, -drift)
-        return acceleration, free
-
-    def _constrained(self, jacobian: Array, force: Array, change: Array) -> tuple[Array, Array]:
-        """Solve M a + J^T l = force (Q,), J a = change (R,) for a (Q,) and l (R,).
-
-        A coordinate without mass goes where constraints take it, and is left at rest where they do not.
-        """
-        count, rows = len(self.system.mass), len(jacobian)
-        unit = self.system.scales.unit[:count] / self.system.scales.length
-        sizes = np.linalg.norm(jacobian * unit, axis=1)
-        scale = np.concatenate((unit, np.diag(self.system.mass).max() / np.maximum(sizes, 1e-300)))
-        matrix = np.block([[self.system.mass, jacobian.T], [jacobian, np.zeros((rows, rows))]])
-        right = np.concatenate((force, change)) * scale
+                drift += sign * (hessian[rows][:, :count] @ v) / (2 * step)
+        # M a + J^T l = force, J a = -drift: what neither mass nor constraints move is at rest
+        sizes = np.linalg.norm(jacobian * unit / system.scales.length, axis=1)
+        scale = np.append(unit / system.scales.length, np.diag(mass).max() / np.maximum(sizes, 1e-300))
+        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((len(rows), len(rows)))]])
+        right = np.append(force, -drift) * scale
         solved = scale * np.linalg.lstsq(matrix * scale[:, None] * scale, right, rcond=1e-14)[0]
-        return solved[:count], solved[count:]
-
-    def _unconstrained(
-        self, system: System, z: Array, gradient: Array, hessian: Array
-    ) -> tuple[Array, Places]:
-        """Coordinates of z with the forces that their strains give and no others, and these others' rows."""
-        layout = system.layout
-        count, end = layout.coordinate_count, layout.multiplier_start
-        free = np.zeros(layout.size)
-        free[:count] = z[:count]
-        evaluate(system, free, 1.0, gradient, hessian)
-        free[count:end] = self.rigidity @ gradient[count:end]
-        fixed = np.ones(layout.size, dtype=bool)
-        fixed[:count], fixed[count:end] = False, np.diag(self.rigidity) == 0
-        return free, np.flatnonzero(fixed)
+        free[rows] = solved[count:]
+        return solved[:count], free
 
     def _with_first_loads(self) -> System:
         """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""

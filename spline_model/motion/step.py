@@ -1,6 +1,8 @@
 """The energy-consistent time step on reduced coordinates: residual and Newton's method, compiled.
 
 D^T (M (v1 - v0) / h + DV(q0, q1) + damping - loads) = 0,   (v0 + v1) / 2 = (q1 - q0) / h = D dy / h
+
+Rotations change by the Cayley variable c = 2 tan(dphi / 2).
 """
 
 from __future__ import annotations
@@ -8,13 +10,12 @@ from __future__ import annotations
 import math
 
 from spline_model.effects.boundary import FOLLOWER
-from spline_model.frames import spread
-from spline_model.motion.bodies import add_followers, add_springs, carry_frames, cayley, fold_frames
+from spline_model.frames import fold, fold_tangent, spread
 from spline_model.motion.start import factor_of
 from spline_model.motion.strip import add_points, condense, move_strip, to_reduced
 from spline_model.newton import ROUND_OFF
 from spline_model.reduced.assembly import place_of
-from spline_model.strip.compiled import called, part
+from spline_model.strip.compiled import called, copy, part
 from spline_model.strip.element import ON_POINTS
 
 STEPS, HALVED, NEWTON, FACTORISATIONS, REFUSED, WHOLE = range(6)
@@ -23,6 +24,11 @@ step that was solved is none, or 0."""
 FOLDS, SNAPS = 1, 2
 """Why a solved step is refused: a strip folds back, or a massless one would leave its equilibrium."""
 MOST_ITERATIONS = 20
+MOVED, PER_MOVE, SHARE, SLOPE = range(4)
+"""Rows of ``Scratch.moved``: changes of the bodies' coordinates, their derivatives in dy, changes over dy,
+and derivatives of these."""
+LONGEST_TURN = 1.5
+"""Largest turn [rad] that velocities are followed to: the Cayley variable has a pole at a half turn."""
 
 
 @part()
@@ -59,26 +65,93 @@ def _driven_to(d, time, acts):
 
 
 @part()
-def _add_bodies(h, state, bodies, masses, work):
-    """Residual and tangent of the bodies alone, and all coordinates at the step's end."""
-    dy, raw, tangent = work.dy, work.residual, work.tangent
-    for i in range(dy.size):
-        work.y[i] = state.y[i] + dy[i]
-    for i in range(masses.inertia.size):
-        mean, load = dy[i] / h, work.load[i]
-        tangent[i, i] = 2.0 / (h * h) * masses.inertia[i] + masses.drag[i] / h
+def _turn_bodies(dy, moved):
+    """Changes of the bodies' coordinates by dy, and what these are over dy."""
+    for i in range(moved.shape[1]):
+        c = dy[i]
+        moved[MOVED, i], moved[PER_MOVE, i], moved[SHARE, i], moved[SLOPE, i] = c, 1.0, 1.0, 0.0
         if i % 3 == 2:
-            work.y[i] = state.y[i] + 2.0 * math.atan(0.5 * dy[i])
-            if load != 0.0:
-                share, slope = cayley(dy[i])
-                tangent[i, i] -= load * slope
-                load *= share
-        raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
-        raw[i] -= bodies.weight[i] + load
-    add_springs(h, state, bodies, masses, work)
-    add_followers(state, masses, work)
+            moved[MOVED, i], moved[PER_MOVE, i] = 2.0 * math.atan(0.5 * c), 1.0 / (1.0 + 0.25 * c * c)
+            if c * c < 1e-8:  # the series is exact to round-off here
+                moved[SHARE, i], moved[SLOPE, i] = 1.0 - c * c / 12.0, -c / 6.0
+            else:
+                moved[SHARE, i] = moved[MOVED, i] / c
+                moved[SLOPE, i] = (moved[PER_MOVE, i] - moved[SHARE, i]) / c
+
+
+@part()
+def _add_bodies(h, state, bodies, masses, work):
+    """Residual and tangent of the bodies alone.
+
+    Springs act at the mean of the step, where their work is their gain of energy.
+    """
+    dy, raw, tangent, moved = work.dy, work.residual, work.tangent, work.moved
     for i in range(masses.inertia.size):
-        work.reduced[i] = raw[i]
+        mean, push, share = dy[i] / h, work.load[i], moved[SHARE, i]
+        for j in range(bodies.springs.shape[0] if i < bodies.springs.shape[0] else 0):
+            k = bodies.springs[i, j]
+            push -= k * (state.y[j] - bodies.rest[j] + 0.5 * moved[MOVED, j])
+            tangent[i, j] += 0.5 * share * k * moved[PER_MOVE, j]
+        raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
+        raw[i] -= bodies.weight[i] + share * push
+        tangent[i, i] += 2.0 / (h * h) * masses.inertia[i] + masses.drag[i] / h - push * moved[SLOPE, i]
+        for j in range(masses.across.shape[0] if i < masses.across.shape[0] else 0):
+            raw[i] += masses.across[i, j] * dy[j] / h
+            tangent[i, j] += masses.across[i, j] / h
+
+
+@part()
+def _add_followers(state, masses, work):
+    """Forces that turn with bodies, as these stand amid the step; parts of one are a load and the next."""
+    for i in range(work.turned.size):
+        work.turned[i] = 0.0
+    for f in range(0, masses.load_at.size - 1):
+        at = masses.load_at[f]
+        if masses.loads.turns[f] == FOLLOWER and at % 3 == 0:
+            angle = state.y[at + 2] + 0.5 * work.moved[MOVED, at + 2]
+            cos, sin, share = math.cos(angle), math.sin(angle), 0.5 * work.moved[PER_MOVE, at + 2]
+            x, y = (
+                cos * work.follow[f] - sin * work.follow[f + 1],
+                sin * work.follow[f] + cos * work.follow[f + 1],
+            )
+            work.turned[at] += x
+            work.turned[at + 1] += y
+            work.tangent[at, at + 2] += share * y
+            work.tangent[at + 1, at + 2] -= share * x
+    for i in range(work.turned.size):
+        work.residual[i] -= work.turned[i]
+
+
+@part()
+def _carry_frames(state, masses, work):
+    """Changes of frames over a step by those of their bodies, as the ends of strips go with theirs.
+
+    arms: of the change over the step; ends: of its derivative at the end.
+    """
+    frames, arms, ends = masses.frames, work.arms, work.ends
+    for f in range(frames.place.shape[0]):
+        at, turn, x, y = frames.place[f, 0], frames.place[f, 1] + 2, frames.lever[f, 0], frames.lever[f, 1]
+        if turn < 2:
+            continue
+        before, slope = state.y[turn], work.moved[PER_MOVE, turn]
+        after = before + work.moved[MOVED, turn]
+        x1, y1 = math.cos(after) * x - math.sin(after) * y, math.sin(after) * x + math.cos(after) * y
+        arms[at] = 0.5 * (math.cos(before) * x - math.sin(before) * y + x1)
+        arms[at + 1] = 0.5 * (math.sin(before) * x + math.cos(before) * y + y1)
+        ends[at], ends[at + 1] = slope * x1, slope * y1
+    spread(work.dy, frames, arms)
+
+
+@part()
+def _fold_frames(masses, work):
+    """Fold what acts on frames, and its derivatives, on their bodies."""
+    frames, ends = masses.frames, work.ends
+    for f in range(frames.place.shape[0]):
+        at = frames.place[f, 0]
+        ends[at + 2] = 0.5 * (ends[at] * work.residual[at] + ends[at + 1] * work.residual[at + 1])
+    fold(work.residual, frames, work.arms)
+    fold(work.reduced, frames, work.arms)
+    fold_tangent(work.tangent, 0.0, frames, work.arms, ends)
 
 
 @part()
@@ -125,11 +198,18 @@ def assemble(h, state, arrays, masses, work):
         work.reduced[i] = 0.0
         for j in range(work.reduced.size):
             work.tangent[i, j] = 0.0
-    carry_frames(state, masses, work)
+    _turn_bodies(work.dy, work.moved)
+    if masses.frames.place.size > 0:
+        _carry_frames(state, masses, work)
+        _turn_bodies(work.dy, work.moved)
+    for i in range(work.dy.size):
+        work.y[i] = state.y[i] + (work.moved[MOVED, i] if i < poses else work.dy[i])
     _add_bodies(h, state, arrays.bodies, masses, work)
+    _add_followers(state, masses, work)
+    copy(raw[:poses], work.reduced)
     for s in range(arrays.strips.roots.size):
         _add_strip(s, h, state, arrays, masses, work)
-    fold_frames(masses, work)
+    _fold_frames(masses, work)
     for i in range(raw.size):
         if i >= poses or work.held[i] == 0:
             norm = max(norm, abs(raw[i])) if raw[i] == raw[i] else math.inf
@@ -167,9 +247,8 @@ def solve_rows(count, matrix, x):
 def _improve(strips, masses, local, work):
     """Newton's correction of dy from the assembled step; its size but for axial forces, or -1 if singular."""
     poses, modes = masses.inertia.size, strips.compliance.shape[1]
-    own, outer, dy, free, x = work.line.size - 6, masses.outer, work.dy, work.free, work.x
-    count = 0
-    for i in range(work.reduced.size):
+    own, outer, dy, free, x, count = work.line.size - 6, masses.outer, work.dy, work.free, work.x, 0
+    for i in range(free.size):
         if i >= poses or work.held[i] == 0:
             free[count] = i
             count += 1
@@ -184,9 +263,9 @@ def _improve(strips, masses, local, work):
         work.reduced[i] = 0.0
     for i in range(count):
         work.reduced[free[i]] = x[i]
-        if free[i] < poses:
-            dy[free[i]] += x[i]
-            size = max(size, abs(x[i]))
+    for i in range(poses):
+        dy[i] += work.reduced[i]
+        size = max(size, abs(work.reduced[i]))
     spread(work.reduced, masses.frames, work.ends)
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
@@ -213,6 +292,12 @@ def _improve(strips, masses, local, work):
 
 
 @part()
+def _cayley(turn):
+    """Return the Cayley variable of a turn [rad], or of the longest one."""
+    return 2.0 * math.tan(0.5 * max(-LONGEST_TURN, min(LONGEST_TURN, turn)))
+
+
+@part()
 def _guess_step(h, state, strips, masses, work):
     """Initial dy from velocities and accelerations over a time h; none, but for the axial forces, over 0."""
     poses, modes, dy = masses.inertia.size, strips.compliance.shape[1], work.dy
@@ -220,7 +305,7 @@ def _guess_step(h, state, strips, masses, work):
     for i in range(poses):
         dy[i] = h * (state.rate[i] + 0.5 * h * state.push[i])
         if i % 3 == 2:
-            dy[i] = 2.0 * math.tan(0.5 * max(-1.5, min(1.5, dy[i])))
+            dy[i] = _cayley(dy[i])
     for s in range(strips.roots.size):
         at, move, ends = poses + s * (own + modes), work.move[s], state.map[s]
         for i in range(move.size):
@@ -236,7 +321,7 @@ def _guess_step(h, state, strips, masses, work):
             if body >= masses.free_from:  # the chord turns as it likes
                 turn = math.atan2(tx * cy - ty * cx, along)
                 dy[3 * body], dy[3 * body + 1] = move[outer], move[outer + 1]
-                dy[3 * body + 2] = 2.0 * math.tan(0.5 * max(-1.5, min(1.5, turn)))
+                dy[3 * body + 2] = _cayley(turn)
                 along = math.sqrt((cx * cx + cy * cy) * square)
             elif body >= 0:
                 angle = 2.0 * math.atan(0.5 * dy[3 * body + 2])

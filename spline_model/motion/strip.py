@@ -1,4 +1,11 @@
-"""One strip over a time step: its forces and their derivatives in its element coordinates, and condensed.
+"""One strip over a time step: discrete gradients of its energies, in its element coordinates and condensed.
+
+A discrete gradient DV(p0, p1) satisfies DV . (p1 - p0) = V(p1) - V(p0) exactly and tends to the gradient as
+p1 -> p0. It is built from the product rule d(fg) = mean(f) dg + mean(g) df, which needs no division by the
+step and is frame indifferent. With v = |C'| the difference of v is mean(C') / mean(v) . dC', and phi = c / s
+the quotient of c = x' y'' - y' x'' and s = v^2. All is in the material measure. A viscous stress, ``rate``
+times the change of the strain, is beside the mean elastic one. Sources: McLachlan, Quispel and Robidoux,
+Phil Trans R Soc A 357 (1999) 1021; Gonzalez, J Nonlinear Sci 6 (1996) 449.
 
 The step's changes dy of the element coordinates move the control points by exactly D dy (a discrete
 null space of the clamps: Betsch, CMAME 194 (2005) 5159), with rotations by the Cayley variable
@@ -32,12 +39,19 @@ from spline_model.strip.element import (
     STRETCHING,
     WEIGHT,
 )
-from spline_model.strip.ends import place_points, to_coordinates
+from spline_model.strip.ends import place_points, to_coordinates, to_ends
+from spline_model.strip.laws import curl_law
 from spline_model.strip.points import add_gaps, add_slopes, couple, curve_at, four
-from spline_model.strip.two_states import bending_between, bending_strain, stretching_between
 
 SLOPE, SHARE = 12, 14
 """Places in D, behind the map of both ends: dc / dphi and the mean of s, of root and tip."""
+GAUSS = (
+    (0.5 - 0.4305681557970263, 0.17392742256872692),
+    (0.5 - 0.16999052179242813, 0.32607257743127307),
+    (0.5 + 0.16999052179242813, 0.32607257743127307),
+    (0.5 + 0.4305681557970263, 0.17392742256872692),
+)
+"""Points on [0, 1] and weights of Gauss and Legendre, four of them."""
 
 
 @part()
@@ -70,6 +84,67 @@ def move_strip(s, at, state, strips, local, work):
 
 
 @called()
+def _mean_moment(e0, e1, drop, curl):
+    """Return the mean over R of the moment of ``curl_law`` between two strains, and its derivative in the
+    second.
+
+    Times the change of the strain it is that of the energy to round-off: by Gauss's rule of four points,
+    which has no difference of energies, and over more than the law's own width by that difference.
+    """
+    if abs(e1 - e0) * curl > 1.0:
+        by_energy, by_moment, _ = curl_law(e1, drop, curl)
+        before = curl_law(e0, drop, curl)[0]
+        mean = 0.5 * (e1 * e1 * by_energy - e0 * e0 * before) / (e1 - e0)
+        return mean, (e1 * by_moment - mean) / (e1 - e0)
+    mean = slope = 0.0
+    for point, weight in GAUSS:
+        e = e0 + point * (e1 - e0)
+        _, by_moment, by_tangent = curl_law(e, drop, curl)
+        mean += weight * e * by_moment
+        slope += weight * point * by_tangent
+    return mean, slope
+
+
+@part()
+def _bend(p, weight, rate, given, old, lanes, tangent):
+    """Discrete gradient of bending in (x', y', x'', y'') at Gauss point p, into the lanes, and its derivative
+    in the second state, by rows; returns the change of the strain.
+
+    old (5,): C', C'' and |C'| of the first state.
+    """
+    x1, y1, x2, y2, v0, v1 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p], old[4], lanes[SPEED_AT, p]
+    r0, r1, c0, c1 = 1.0 / (v0 * v0), 1.0 / (v1 * v1), old[0] * old[3] - old[1] * old[2], x1 * y2 - y1 * x2
+    scale = 1.0 / given[SPEED]
+    e0, e1 = c0 * r0 * scale - given[CURVATURE], c1 * r1 * scale - given[CURVATURE]
+    moment, share = 0.5 * (e0 + e1), 0.5
+    if given[CURL] > 0.0:
+        moment, share = _mean_moment(e0, e1, given[DROP:MODES], given[CURL])
+    pull = weight * given[RIGIDITY] * (moment + rate * (e1 - e0))
+    stiff = weight * given[RIGIDITY] * (share + rate) * scale
+    # mean(1/s) dc + mean(c) d(1/s), whose divided difference in s is -1 / (s0 s1)
+    middle, mean, divided = 0.5 * (c0 + c1), 0.5 * (r0 + r1), -r0 * r1
+    m0, m1, m2, m3 = 0.5 * (old[0] + x1), 0.5 * (old[1] + y1), 0.5 * (old[2] + x2), 0.5 * (old[3] + y2)
+    factor = 2.0 * middle * divided
+    d = factor * m0 + mean * m3, factor * m1 - mean * m2, -mean * m1, mean * m0
+    # derivatives in the second state: of the strain, of the factor and of the mean power
+    turn, wide, half = -2.0 * c1 * r1 * r1, 4.0 * middle * r0 * r1 * r1, 0.5 * mean
+    k = y2 * r1 + turn * x1, turn * y1 - x2 * r1, -y1 * r1, x1 * r1
+    f0, f1, f2, f3 = y2 * divided + wide * x1, wide * y1 - x2 * divided, -y1 * divided, x1 * divided
+    q0, q1 = -r1 * r1 * x1, -r1 * r1 * y1
+    t = (
+        f0 * m0 + q0 * m3 + 0.5 * factor, f1 * m0 + q1 * m3, f2 * m0, f3 * m0 + half,
+        f0 * m1 - q0 * m2, f1 * m1 - q1 * m2 + 0.5 * factor, f2 * m1 - half, f3 * m1,
+        -q0 * m1, -q1 * m1 - half, 0.0, 0.0,
+        q0 * m0 + half, q1 * m0, 0.0, 0.0,
+    )  # fmt: skip
+    for i in range(4):
+        lanes[4 + i, p] = pull * d[i]
+        for j in range(4):
+            tangent[4 * i + j] = stiff * d[i] * k[j] + pull * t[4 * i + j]
+    return e1 - e0
+
+
+@called()
 def _add_products(pairs, h0, h1, h2, h3, block):
     """Add one component's h (C', C'') to its block of the tangent, (n n,) by rows."""
     p0, p1, p2, p3 = pairs[0], pairs[1], pairs[2], pairs[3]
@@ -80,8 +155,8 @@ def _add_products(pairs, h0, h1, h2, h3, block):
 @part()
 def add_points(s, a, h, state, shape, strips, masses, local, work):
     """Forces on the control points, their tangent in the new ones, gaps and their derivatives."""
-    lanes, along, numbers, blocks = local.lanes[s], strips.along[s], strips.numbers[s], work.blocks
-    rate, strain, stretching = masses.relaxation[s] / h, numbers[STRAIN], numbers[STRETCHING]
+    lanes, along, numbers, blocks, t = local.lanes[s], strips.along[s], strips.numbers[s], work.blocks, work.t
+    rate, strain, stretching, lost = masses.relaxation[s] / h, numbers[STRAIN], numbers[STRETCHING], 0.0
     d1, d2, weights = shape.curve[0], shape.curve[1], shape.rule[WEIGHT]
     at_mean, at_end, mode = lanes[HESSIAN_AT:], lanes[HESSIAN_AT + 2 :], lanes[HESSIAN_AT + 4]
     curve_at(local.nodal[s, POINTS], d1, d2, four(lanes, 0))
@@ -89,73 +164,54 @@ def add_points(s, a, h, state, shape, strips, masses, local, work):
         for c in range(blocks.shape[1]):
             blocks[q, c] = 0.0
     for p in range(weights.size):
-        weight, given, old = weights[p], along[p], state.curve[s, :, p]
-        x1, y1, x2, y2, v0, speed = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p], old[4], given[SPEED]
+        weight, given, old = weights[p], along[p], state.curve[s, p]
+        x1, y1, v0, speed = lanes[0, p], lanes[1, p], old[4], given[SPEED]
         v1 = math.sqrt(x1 * x1 + y1 * y1)
-        (
-            g0, g1, g2, g3,
-            h00, h01, h02, h03, h10, h11, h12, h13, h20, h21, h22, h23, h30, h31, h32, h33,
-        ) = bending_between(
-            old[0], old[1], old[2], old[3], v0, x1, y1, x2, y2, v1,
-            speed, given[CURVATURE], given[RIGIDITY], given[DROP:MODES], given[CURL], rate,
-        )  # fmt: skip
-        inverse, w, tension, stiffness = 1.0 / v1, 2.0 / (v0 + v1), 0.0, 0.0
-        dx, dy = 0.5 * (old[0] + x1) * w, 0.5 * (old[1] + y1) * w
-        tx, ty = x1 * inverse, y1 * inverse
+        lanes[SPEED_AT, p] = v1
+        turned = _bend(p, weight, rate, given, old, lanes, t)
+        e0, e1 = v0 / speed - 1.0 - strain, v1 / speed - 1.0 - strain
+        w, tension = 2.0 / (v0 + v1), stretching * (0.5 * (e0 + e1) + rate * (e1 - e0))
         for k in range(a.size):
             tension += given[MODES + k] * a[k]
-        if stretching > 0.0:
-            force, stiffness = stretching_between(v0, v1, speed, strain, stretching, rate)
-            tension += force
-        turn = 0.5 * tension * w
-        grow, part_of_end = stiffness - turn, weight * (0.5 + rate)
-        lanes[SPEED_AT, p] = v1
+        lost += weight * speed * (given[RIGIDITY] * turned**2 + stretching * (e1 - e0) ** 2)
+        dx, dy, tx, ty = weight * 0.5 * (old[0] + x1) * w, weight * 0.5 * (old[1] + y1) * w, x1 / v1, y1 / v1
+        turn, part_of_end = 0.5 * tension * w, weight * (0.5 + rate)
+        grow = stretching * (0.5 + rate) / speed - turn
         lanes[PULL_AT, p] = weight * (0.5 * (v0 + v1) - (1.0 + strain) * speed + rate * (v1 - v0))
-        lanes[4, p], lanes[5, p] = weight * (g0 + tension * dx), weight * (g1 + tension * dy)
-        lanes[6, p], lanes[7, p] = weight * g2, weight * g3
-        at_mean[0, p], at_mean[1, p] = weight * dx, weight * dy
+        lanes[4, p] += tension * dx
+        lanes[5, p] += tension * dy
+        at_mean[0, p], at_mean[1, p] = dx, dy
         at_end[0, p], at_end[1, p] = part_of_end * tx, part_of_end * ty
-        pairs = masses.pairs[p]
-        xx, xy = weight * (h00 + grow * dx * tx + turn), weight * (h01 + grow * dx * ty)
-        yx, yy = weight * (h10 + grow * dy * tx), weight * (h11 + grow * dy * ty + turn)
-        _add_products(pairs, xx, weight * h02, weight * h20, weight * h22, blocks[0])
-        _add_products(pairs, xy, weight * h03, weight * h21, weight * h23, blocks[1])
-        _add_products(pairs, yx, weight * h12, weight * h30, weight * h32, blocks[2])
-        _add_products(pairs, yy, weight * h13, weight * h31, weight * h33, blocks[3])
+        t[0] += grow * dx * tx + weight * turn
+        t[1] += grow * dx * ty
+        t[4] += grow * dy * tx
+        t[5] += grow * dy * ty + weight * turn
+        for q in range(4):  # xx, xy, yx, yy
+            i = 4 * (q // 2) + q % 2
+            _add_products(masses.pairs[p], t[i], t[i + 2], t[i + 8], t[i + 10], blocks[q])
     add_slopes(d1.shape[0], d1, d2, four(lanes, 4), work.force[s])
     add_gaps(s, a, strips, local)
     for k in range(a.size):
+        change = 0.0
         for p in range(weights.size):
             mode[p] = along[p, MODES + k]
+            change += weights[p] * mode[p] * (lanes[SPEED_AT, p] - state.curve[s, p, 4])
+        if strips.compliance[s, k] > 0.0:
+            lost += change * change / strips.compliance[s, k]
         couple(d1.shape[0], d1, mode, (at_mean[0], at_mean[1]), work.pull[k])
         couple(d1.shape[0], d1, mode, (at_end[0], at_end[1]), work.along[k])
+    work.lost[s] = rate * lost
 
 
 @part()
-def _combine(row, inner, outer, m0, m1, m2, m3, half, size, h):
-    """A row of h from those of ``half``: the inner point's by m0 and m1, the outer one's by m2 and m3."""
-    x, y, u, v = half[inner], half[inner + 1], half[outer], half[outer + 1]
-    for j in range(size):
-        h[row, j] = m0 * x[j] + m1 * y[j] + m2 * u[j] + m3 * v[j]
-
-
-@called()
-def _add_end(e, own, turn, size, force, mean, end, half, h):
-    """Rows of an end by D, and (dD)^T times the forces; turn: place of its body's rotation, or 0."""
+def _turn_end(e, own, turn, force, mean, end, h):
+    """Add (dD)^T times the forces at an end; turn: place of its body's rotation."""
     inner, outer, stick, lever, row = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e, 8 - 4 * e, own - 2 + e
-    tx, ty, slope, share = mean[stick], mean[stick + 1], mean[SLOPE + e], mean[SHARE + e]
-    _combine(row, inner, outer, tx, ty, 0.0, 0.0, half, size, h)
-    if turn == 0:
-        return
-    _combine(turn - 2, inner, outer, 1.0, 0.0, 1.0, 0.0, half, size, h)
-    _combine(turn - 1, inner, outer, 0.0, 1.0, 0.0, 1.0, half, size, h)
-    m0, m1, m2, m3 = mean[lever], mean[lever + 1], mean[lever + 2], mean[lever + 3]
-    _combine(turn, inner, outer, m0, m1, m2, m3, half, size, h)
     fx, fy, kx, ky = force[inner], force[inner + 1], end[stick], end[stick + 1]
     arm = end[lever + 3] * (fx + force[outer]) - end[lever + 2] * (fy + force[outer + 1])
-    h[row, turn] += 0.5 * slope * (kx * fy - ky * fx)
-    h[turn, row] += 0.5 * (tx * fy - ty * fx)
-    h[turn, turn] -= 0.5 * (arm + slope * share * (kx * fx + ky * fy))
+    h[row, turn] += 0.5 * mean[SLOPE + e] * (kx * fy - ky * fx)
+    h[turn, row] += 0.5 * (mean[stick] * fy - mean[stick + 1] * fx)
+    h[turn, turn] -= 0.5 * (arm + mean[SLOPE + e] * mean[SHARE + e] * (kx * fx + ky * fy))
 
 
 @part()
@@ -170,16 +226,23 @@ def to_reduced(s, strips, work):
     size = own + 3 * tip + 3 * root
     for i in range(n):
         for q in range(2):
+            row = half[2 * i + q]
             for j in range(n):
-                line[2 * j], line[2 * j + 1] = blocks[2 * q, i * n + j], blocks[2 * q + 1, i * n + j]
-                line[2 * j + q] += work.stiff[s, i, j]
-            to_coordinates(s, line, own, end, strips, half[2 * i + q])
-    for i in range(own - 2):
-        for j in range(size):
-            h[i, j] = half[i, j]
+                row[2 * j], row[2 * j + 1] = blocks[2 * q, i * n + j], blocks[2 * q + 1, i * n + j]
+                row[2 * j + q] += work.stiff[s, i, j]
+    for j in range(2 * n):
+        for i in range(8):
+            line[i] = half[own - 2 + i, j]
+        to_ends(line, 0, mean, tip, root, g, 0, 2)
+        for i in range(size - own + 2):
+            half[own - 2 + i, j] = g[i]
+    for i in range(size):
+        to_coordinates(s, half[i], own, end, strips, h[i])
     to_coordinates(s, force, own, mean, strips, g)
-    _add_end(0, own, size - 1 if root else 0, size, force, mean, end, half, h)
-    _add_end(1, own, own + 2 if tip else 0, size, force, mean, end, half, h)
+    if root:
+        _turn_end(0, own, size - 1, force, mean, end, h)
+    if tip:
+        _turn_end(1, own, own + 2, force, mean, end, h)
     for k in range(strips.compliance.shape[1]):
         to_coordinates(s, work.pull[k], own, mean, strips, work.left[k])
         to_coordinates(s, work.along[k], own, end, strips, work.right[s, k])
@@ -225,33 +288,14 @@ def condense(s, size, strips, masses, local, work):
 
 
 @part()
-def lost_between(s, h, old, strips, shape, relaxation, local):
-    """Return the energy that strip s dissipates over a step from the curve ``old`` (5, G) to the present
-    one."""
-    lanes, along, weights = local.lanes[s], strips.along[s], shape.rule[WEIGHT]
-    stretching, rate, lost = strips.numbers[s, STRETCHING], relaxation / h, 0.0
-    for p in range(weights.size):
-        given, v, v0 = along[p], lanes[SPEED_AT, p], old[4, p]
-        speed, curvature = given[SPEED], given[CURVATURE]
-        bend = bending_strain(lanes[0, p] * lanes[3, p] - lanes[1, p] * lanes[2, p], v, speed, curvature)
-        bend -= bending_strain(old[0, p] * old[3, p] - old[1, p] * old[2, p], v0, speed, curvature)
-        lost += rate * weights[p] * speed * (given[RIGIDITY] * bend**2 + stretching * ((v - v0) / speed) ** 2)
-    for k in range(strips.compliance.shape[1]):
-        if strips.compliance[s, k] > 0.0:
-            change = 0.0
-            for p in range(weights.size):
-                change += weights[p] * along[p, MODES + k] * (lanes[SPEED_AT, p] - old[4, p])
-            lost += rate * change * change / strips.compliance[s, k]
-    return lost
-
-
-@part()
 def keep_curve(s, strips, local, state):
     """Keep map and curve of a strip that was evaluated."""
+    lanes, curve = local.lanes[s], state.curve[s]
     copy(local.map[s], state.map[s])
-    for i in range(4):
-        copy(local.lanes[s, i], state.curve[s, i])
-    copy(local.lanes[s, SPEED_AT], state.curve[s, 4])
+    for p in range(curve.shape[0]):
+        for i in range(4):
+            curve[p, i] = lanes[i, p]
+        curve[p, 4] = lanes[SPEED_AT, p]
 
 
 @part()

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from spline_model.accuracy import FIRST
+from spline_model.accurate_motion import STEPS_PER_PERIOD
 from spline_model.compile import compile_scene
-from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
 from spline_model.section_forces import StripFields, strip_fields
