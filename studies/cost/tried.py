@@ -14,6 +14,7 @@ increments or steps alone stands beside it. An advice is the cheapest setting of
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from operator import attrgetter
 from typing import Any
@@ -74,6 +75,12 @@ class Setting:
     def theory(self) -> str:
         """What the strips' energies are measured in, which decides on the limit: of `THEORIES`."""
         return SHEAR if self.model.sheared or self.settings.get("element") == "reissner" else MATERIAL
+
+    @property
+    def kind(self) -> tuple[str, ...]:
+        """What settings have in common that differ in numbers alone: the code that they load."""
+        words = (value for value in self.settings.values() if isinstance(value, str))
+        return (self.model.name, *self.settings, *words)
 
     @property
     def finer(self) -> str:
@@ -188,31 +195,23 @@ def compared(
     many `runs` they are of. One that fails has no errors.
     """
 
-    def timed(each: Setting, runs: int, warm_up: int = 0) -> Any:
-        def solve() -> Any:
-            if instants is None:
-                return each.model.path(design, **each.settings)
-            return each.model.swing(design, float(instants[-1]), **each.settings)
-
-        return measure(solve, repeat=runs, warm_up=warm_up, part=attrgetter("solve_s"))
-
     on_path = instants is None
+    timed = partial(_timed, design, None if instants is None else float(instants[-1]))
     errors = reference.largest_errors if on_path else reference.swing_errors
     rows: list[Row] = []
     times: list[list[tuple[float, float]]] = []
-    loaded: set[Any] = set()
+    loaded: set[tuple[str, ...]] = set()
     for each in watched(settings, progress):
-        row, kind = each.columns, (each.model, *each.settings, *each.settings.values())
-        kind = tuple(part for part in kind if not isinstance(part, int | float))
+        row = each.columns
         times.append([])
         try:
-            first = timed(each, 1, warm_up=int(kind not in loaded))
+            first = timed(each, repeat=1, warm_up=int(each.kind not in loaded))
             found = errors(first.result, limits[each.theory])
             rows.append(row | {"status": "converged", "message": ""} | found)
             times[-1] += zip(first.seconds, first.parts, strict=True)
         except (Unanswered, BadInput) as stopped:
             rows.append(row | {"status": "failed", "message": str(stopped)})
-        loaded.add(kind)
+        loaded.add(each.kind)
     table = pd.DataFrame(rows)
     judged = PATH_JUDGED if on_path else SWING_JUDGED
     firsts = [own[0][0] if own else math.nan for own in times]
@@ -220,10 +219,22 @@ def compared(
     for place in again:  # whose first run has prepared what it depends on
         times[place].clear()
     for _, place in product(range(passes), again):
-        more = timed(settings[place], int(min(RUNS, max(1.0, AFFORDED / firsts[place]))))
+        more = timed(settings[place], repeat=int(min(RUNS, max(1.0, AFFORDED / firsts[place]))), warm_up=0)
         times[place] += zip(more.seconds, more.parts, strict=True)
     whole, alone = np.transpose([np.median(own or [(math.nan, math.nan)], axis=0) for own in times])
     return table.assign(whole_s=whole, solve_s=alone, runs=list(map(len, times)))
+
+
+def _timed(design: Design, duration: float | None, each: Setting, **runs: int) -> Any:
+    """Return the answer of a setting to the path of a design, or to its motion of a duration [s], with its
+    times."""
+
+    def solve() -> Any:
+        if duration is None:
+            return each.model.path(design, **each.settings)
+        return each.model.swing(design, duration, **each.settings)
+
+    return measure(solve, part=attrgetter("solve_s"), **runs)
 
 
 def _rivals(rows: pd.DataFrame, judged: Sequence[str]) -> list[int]:
