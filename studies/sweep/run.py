@@ -10,6 +10,7 @@ Its folder holds what it was made from, a part for each chunk, and in the end on
 Every file is written under another name and renamed when it is complete.
 """
 
+import asyncio
 import hashlib
 import json
 import logging
@@ -47,8 +48,6 @@ MANIFEST, TABLE, CSV = "sweep.json", "designs.parquet", "designs.csv"
 SUITE = "cross-axis-pivot-validation"
 #: Libraries whose version can change a number or a byte of the table.
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
-#: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
-SOURCES = ("studies.sweep.points", "studies.sweep.plan")
 
 
 class SweepError(BadInput):
@@ -134,7 +133,7 @@ def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Tab
 
 def _said(error: BaseException) -> str:
     """Return kind and first line of an error."""
-    return f"{type(error).__name__}: {error}".splitlines()[0]
+    return f"{type(error).__name__}: {error}".splitlines()[0].removesuffix(": ")
 
 
 @contextmanager
@@ -180,9 +179,10 @@ def cluster(
         ) from None
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by what is raised
-    with _refusing(address, "where no scheduler answers", "an address as tcp://HOST:PORT"):
-        client = Client(address, timeout=timeout, set_as_default=False)
-    with client:
+    within = f"where no scheduler answers within {timeout:g} s"
+    with _refusing(address, within, "an address as tcp://HOST:PORT"):
+        asyncio.run(_require_scheduler(address, timeout))
+    with Client(address, timeout=timeout, set_as_default=False) as client:
         with _refusing(address, "which lacks workers", f"one: dask worker {address}"):
             client.wait_for_workers(workers, timeout=workers_within)
         with _refusing(address, "whose workers cannot use the suite", "it to be installed there"):
@@ -194,6 +194,16 @@ def cluster(
                     "expected the same everywhere"
                 )
         yield Pool(client.get_executor(pure=False), sum(client.nthreads().values()))
+
+
+async def _require_scheduler(address: str, timeout: float) -> None:
+    """Raise an error unless a scheduler answers there; a client that waits in vain takes long to give up."""
+    from distributed.core import rpc
+
+    async with rpc(address, timeout=timeout) as server:
+        kind = (await asyncio.wait_for(server.identity(), timeout))["type"]
+    if kind != "Scheduler":
+        raise ValueError(f"there is a {kind}")
 
 
 @contextmanager
@@ -296,7 +306,7 @@ def _manifest_of(plan: Plan) -> dict[str, Any]:
     columns |= {STATUS: "converged, not_converged, refused or failed", REASON: "why, or a remark; else empty"}
     columns |= {name: quantity.meaning for name, quantity in stored(plan.task).items()}
     return {
-        "inputs_sha256": _sha256(json.dumps(content, sort_keys=True)),
+        "inputs_sha256": hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest(),
         "inputs": content,
         "suite": suite(),
         "versions": {name: version(name) for name in LIBRARIES},
@@ -306,8 +316,7 @@ def _manifest_of(plan: Plan) -> dict[str, Any]:
 
 def suite() -> dict[str, str]:
     """Return which version of the suite this is: its number, and a hash of what the numbers follow from."""
-    source = "".join(source_hash(module) for module in SOURCES)
-    return {"version": version(SUITE), "source_sha256": _sha256(source)}
+    return {"version": version(SUITE), "source_sha256": source_hash("studies.sweep.plan")}
 
 
 def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
@@ -359,7 +368,3 @@ def _stream(tables: Iterator[pa.Table], writer_of: Any) -> None:
     with writer_of(first.schema) as writer:
         for table in chain((first,), tables):
             writer.write_table(table)
-
-
-def _sha256(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
