@@ -157,16 +157,11 @@ def local_pool(workers: int | None = None) -> Iterator[Pool]:
 
 
 @contextmanager
-def cluster(
-    address: str, *, workers: int = 1, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
-) -> Iterator[Pool]:
-    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are so many.
+def cluster(address: str) -> Iterator[Pool]:
+    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are any.
 
     Every worker needs the suite in the same version. The chunks of a lost worker go to others. The rows
     return to this process, which alone writes.
-
-    Args:
-        workers: least number [1]. timeout: for the scheduler [s]. workers_within: for the workers [s].
 
     Raises:
         BadInput: distributed is not installed, no scheduler answers, lacks workers or the suite; one line.
@@ -179,12 +174,13 @@ def cluster(
         ) from None
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by what is raised
-    within = f"where no scheduler answers within {timeout:g} s"
+    within = f"where no scheduler answers within {TIMEOUT:g} s"
     with _refusing(address, within, "an address as tcp://HOST:PORT"):
-        asyncio.run(_require_scheduler(address, timeout))
-    with Client(address, timeout=timeout, set_as_default=False) as client:
-        with _refusing(address, "which lacks workers", f"one: dask worker {address}"):
-            client.wait_for_workers(workers, timeout=workers_within)
+        asyncio.run(_require_scheduler(address))
+    with Client(address, timeout=TIMEOUT, set_as_default=False) as client:
+        within = f"which lacks workers after {WORKERS_WITHIN:g} s"
+        with _refusing(address, within, f"one: dask worker {address}"):
+            client.wait_for_workers(1, timeout=WORKERS_WITHIN)
         with _refusing(address, "whose workers cannot use the suite", "it to be installed there"):
             versions = client.run(suite)
         for worker, found in versions.items():
@@ -196,12 +192,12 @@ def cluster(
         yield Pool(client.get_executor(pure=False), sum(client.nthreads().values()))
 
 
-async def _require_scheduler(address: str, timeout: float) -> None:
+async def _require_scheduler(address: str) -> None:
     """Raise an error unless a scheduler answers there; a client that waits in vain takes long to give up."""
     from distributed.core import rpc
 
-    async with rpc(address, timeout=timeout) as server:
-        kind = (await asyncio.wait_for(server.identity(), timeout))["type"]
+    async with rpc(address, timeout=TIMEOUT) as server:
+        kind = (await asyncio.wait_for(server.identity(), TIMEOUT))["type"]
     if kind != "Scheduler":
         raise ValueError(f"there is a {kind}")
 
