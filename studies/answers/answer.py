@@ -64,12 +64,13 @@ class Answer:
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
-        """Return the neutral form of a model's own answer; `given` are its times [s] and other known
+        """Return the neutral form of a model's own answer; `given` are its time [s] and other known
         attributes."""
         ended = {
             "status": str(result.status.value),
             "message": result.message,
             "resolution": getattr(result, "resolution", ""),
+            "solve_s": float(result.seconds["solve"]),
         }
         return cls(asked=asked, solution=result, **ended | given)
 
