@@ -128,7 +128,6 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         case=case,
         model=model,
         settings=settings,
-        keys=tuple(columns),
         kind=kind,
         options=options,
         quantities=_quantities(where, tables["store"], found),

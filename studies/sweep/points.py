@@ -50,7 +50,7 @@ class Task:
         model: as on the command line. settings: keywords of its settings.
         kind: of the analysis, one of `KINDS`.
         options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
-        keys: that are varied. quantities: names of what is stored.
+        quantities: names of what is stored.
     """
 
     where: str
@@ -59,7 +59,6 @@ class Task:
     settings: dict[str, Any]
     kind: str
     options: dict[str, Any]
-    keys: tuple[str, ...]
     quantities: tuple[str, ...]
 
     def design(self, values: Mapping[str, Any]) -> Design:

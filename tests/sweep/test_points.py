@@ -29,7 +29,7 @@ def test_rows_are_what_solve_answers():
     """Requirement: a row of a pivot, whatever varies, has the numbers of `solve` to the last digit."""
     asked = plan(RANDOM.replace("points = 200", "points = 3"))
     for row in rows(asked).to_dict("records"):
-        given = {key: row[key] for key in asked.task.keys}
+        given = {key: row[key] for key in asked.columns}
         answer = answer_static(asked.task.design(given), SplineSettings())
         assert row["torque_Nm"] == answer.torque[-1]
         assert row["stress_max_Pa"] == answer.max_stress.max()
