@@ -19,15 +19,8 @@ __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_prob
 TABLE_1 = "cross_axis_pivot"
 FOLDER = Path(__file__).parent
 
-#: Parameters that are passed on only where the case gives them: the sides of a rectangular section.
-SIDES = ("width", "thickness")
-TAPER = ("width_end", "thickness_end")
 #: What only answers ask for, or stands for other values.
-_BESIDE = (*SIDES, *TAPER, "outer_fibre", "yield_strength", "material")
-#: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
-PIVOT_PARAMETERS = tuple(
-    key.attribute for key in KEYS if key.section != "drive" and key.attribute not in _BESIDE
-)
+_BESIDE = ("outer_fibre", "yield_strength", "material")
 #: What strips and body are called.
 STRIPS, BODY = ("strip_1", "strip_2"), "body"
 
@@ -97,9 +90,9 @@ class Problem(Sectioned, Driven):
         return model.cross_axis_pivot(**self.pivot_parameters(), **how)
 
     def pivot_parameters(self) -> dict[str, Any]:
-        """Return the keyword arguments that `cross_axis_pivot` of either model takes."""
-        sides = [name for name in (*SIDES, *TAPER) if getattr(self, name) is not None]
-        return {name: getattr(self, name) for name in (*PIVOT_PARAMETERS, *sides)}
+        """Return the keyword arguments that `cross_axis_pivot` of either model takes, sides only if known."""
+        names = [key.attribute for key in KEYS if key.section != "drive" and key.attribute not in _BESIDE]
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
 
 def named_case(case: str | Path = TABLE_1) -> Problem:

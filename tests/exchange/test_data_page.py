@@ -12,7 +12,7 @@ from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES
 from studies.cases.design import named_design, read_design
 from studies.cases.problem import FOLDER
-from studies.exchange import mesh, tables
+from studies.exchange import meshes, tables
 from studies.record.source import ROOT
 from studies.record.store import RESULTS
 from tests.exchange.test_files import solved
@@ -106,7 +106,7 @@ def test_arrays_of_vtk_are_described():
     known = described("**VTK.**")
     points, cells = set(), set()
     for kind in ("static", "modes", "release"):
-        made = mesh(solved(kind), 0)
+        made = next(meshes(solved(kind)))
         points |= set(made.point_data)
         cells |= set(made.cell_data)
     assert {name for name, row in known.items() if row[1] == "points"} == points

@@ -16,7 +16,7 @@ from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import Answer
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
-from studies.exchange import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, files, mesh, tables
+from studies.exchange import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, files, meshes, tables
 
 
 @cache
@@ -50,8 +50,8 @@ def test_vtk_reads_back(kind, tmp_path):
         (tmp_path / name).write_bytes(content)
     series = ElementTree.parse(tmp_path / f"{found.analysis}.pvd").getroot().findall("Collection/DataSet")
     assert [float(each.attrib["timestep"]) for each in series] == pytest.approx(found.values)
-    for state, each in enumerate(series):
-        read, made = meshio.read(tmp_path / each.attrib["file"]), mesh(found, state)
+    for made, each in zip(meshes(found), series, strict=True):
+        read = meshio.read(tmp_path / each.attrib["file"])
         assert np.array_equal(read.points, made.points)
         assert read.point_data.keys() == made.point_data.keys()
         for name, values in made.point_data.items():
@@ -65,7 +65,7 @@ def test_vtk_reads_back(kind, tmp_path):
 def test_mesh_holds_what_was_solved(kind):
     """Points, displacements, forces and parts of the mesh are those of the answer."""
     found = solved(kind)
-    last, made = len(found.values) - 1, mesh(found, len(found.values) - 1)
+    last, made = len(found.values) - 1, list(meshes(found))[-1]
     along, moves = found.along, found.analysis == "modes"
     strips, stations = along.rotation.shape[1:]
     count = strips * stations
