@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from .arrays import Array, Flags, kernel
 from .control import Control, State, equilibrate
@@ -246,6 +245,8 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
         if found.factors is None:
             return stiff + part * (soft - stiff)
         return respond(control, found).stiffness
+
+    from scipy.optimize import brentq  # whose import takes longer than a small solve
 
     part = brentq(remaining, 0.0, 1.0, xtol=PLACED)
     y, parameter = _part_of_the_way(before, after, part)
