@@ -38,11 +38,7 @@ PRINTED: dict[str, tuple[tuple[str, ...], Callable[[Response], Any]]] = {
 
 
 def deliver(
-    arguments: argparse.Namespace,
-    document: Mapping[str, Any],
-    table: Iterable[str],
-    *,
-    failure: str | None,
+    arguments: argparse.Namespace, document: Mapping[str, Any], table: Iterable[str], *, failure: str | None
 ) -> int:
     """Print `table`, and write `document` where `--json` says and its arrays where `--csv` does; return the
     exit code. What goes to the output stream stands alone.
