@@ -156,7 +156,7 @@ def _document(answer: Motion) -> dict[str, Any]:
         "frequency_reason": answer.swing.reason,
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
-        **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
+        **tell.moved(answer),
         **{each.key: each.of(answer) for each in energies},
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),
