@@ -19,7 +19,6 @@ from time import perf_counter
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from scipy.interpolate import CubicHermiteSpline
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
@@ -261,6 +260,8 @@ def _integral(control: Control, before: State, after: State) -> float:
     step, load, structure = after.parameter - before.parameter, control.load, control.structure
     total = 0.5 * step * (before.conjugate + after.conjugate) + step**2 / 12.0 * (before.slope - after.slope)
     if load is not None and structure.loads.follows:
+        from scipy.interpolate import CubicHermiteSpline  # whose import takes longer than a small solve
+
         ends = [(at.parameter, at.y, at.rate) for at in (before, after)]
         curve = CubicHermiteSpline(*zip(*ends, strict=True))
         for place, weight in zip(*leggauss(3), strict=True):

@@ -48,7 +48,6 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import root
 from skfem import Basis, BilinearForm, ElementTriArgyris, LinearForm, MeshTri, condense, solve
 from skfem.helpers import dd, ddot, trace
 
@@ -273,6 +272,8 @@ def _layers(width_ratio: float, poisson_ratio: float) -> tuple[float, float]:
         found = 1.0 / np.array([weights @ compliance, 12.0 * (weights * u * u) @ compliance])
         gap: Array = (found - known) / square
         return gap
+
+    from scipy.optimize import root  # whose import takes longer than a small solve
 
     fit = root(residual, [0.0, np.log(min(0.2 * width_ratio, 0.25))], tol=1e-14)
     if not np.abs(residual(fit.x)).max() <= FITTED:

@@ -28,7 +28,6 @@ from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
-from scipy.interpolate import krogh_interpolate
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from skfem import Basis, ElementHex2, ElementHexS2, MeshHex
 from skfem.quadrature import get_quadrature
@@ -321,6 +320,8 @@ def solve_solids(
     >>> bool(path.torque[0] > 0.0)
     True
     """
+    from scipy.interpolate import krogh_interpolate  # whose import takes longer than a small solve
+
     root, tip = (np.asarray(ends, dtype=float) @ [1.0, 1.0j]).T
     axes = (tip - root) / strip.length
     if not np.allclose(np.abs(axes), 1.0, rtol=1e-9):

@@ -67,7 +67,7 @@ displacement_m = [0, 0]
     ("begin", "instead", "message"),
     [
         (SIDES, MOMENTS, "strip.outer_fibre_m: got 0.0025, expected none"),
-        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body that is free to shift"),
+        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body free to shift"),
         (
             "[drive]",
             '[scene]\neffects = ["+gravity"]\n[drive]\norder = "together"',
