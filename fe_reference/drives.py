@@ -14,9 +14,10 @@ from typing import Annotated
 
 import numpy as np
 
+from . import read
 from .arrays import Array, Flags
 from .effects import ALWAYS_FULL, factor_of, twice
-from .errors import Checked, History, InvalidParameter, finite, read_history
+from .errors import InvalidParameter
 from .mass import RigidBodies
 from .model import Model
 from .structure import Structure
@@ -27,7 +28,7 @@ ALWAYS = (0.0, math.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrivenRotation(Checked):
+class DrivenRotation(read.Checked):
     """The rotation of a body prescribed as an angle times the change of a history, from the current rotation.
 
     A body that is re-clamped loses the velocity that the drive does not have.
@@ -58,8 +59,8 @@ class DrivenRotation(Checked):
     """
 
     body: str | None = None
-    angle: Annotated[float, finite, "rad"]
-    history: Annotated[History, read_history] = ALWAYS_FULL
+    angle: Annotated[float, read.finite, "rad"]
+    history: Annotated[read.History, read.history] = ALWAYS_FULL
     held: tuple[float, float] = ALWAYS
 
     def __post_init__(self) -> None:

@@ -16,20 +16,10 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from . import read
 from .arrays import Array
 from .drives import DrivenRotation, Span, drive_spans
-from .errors import (
-    Checked,
-    ConvergenceError,
-    InvalidParameter,
-    choice,
-    count,
-    finite,
-    flag,
-    optional,
-    positive,
-    require_kind,
-)
+from .errors import ConvergenceError, InvalidParameter
 from .mass import about_mass_centre, carried_over
 from .model import Model, require_model
 from .modes import first_frequency
@@ -56,7 +46,7 @@ FEWEST = 4
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run(Checked):
+class Run(read.Checked):
     """What is asked of a motion.
 
     Attributes:
@@ -79,23 +69,23 @@ class Run(Checked):
         progress: called as progress(done, total) after every sample.
     """
 
-    duration: Annotated[float, positive, "s"]
-    start: Annotated[float | None, optional, finite, "rad"] = None
+    duration: Annotated[float, read.positive, "s"]
+    start: Annotated[float | None, read.optional, read.finite, "rad"] = None
     body: str | None = None
     drive: DrivenRotation | None = None
     settled: bool = True
-    increments: Annotated[int, count] = 20
-    step: Annotated[float | None, optional, positive, "s"] = None
-    integrator: Annotated[str, choice, INTEGRATORS] = INTEGRATORS[0]
-    samples: Annotated[int, count] = 1000
+    increments: Annotated[int, read.count] = 20
+    step: Annotated[float | None, read.optional, read.positive, "s"] = None
+    integrator: Annotated[str, read.choice, INTEGRATORS] = INTEGRATORS[0]
+    samples: Annotated[int, read.count] = 1000
     aligned: bool = False
-    most_steps: Annotated[int, count] = MOST_STEPS
+    most_steps: Annotated[int, read.count] = MOST_STEPS
     progress: Progress | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.drive is not None:
-            require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
+            read.require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
         if self.start is not None and not self.settled:
             raise InvalidParameter("settled", self.settled, "True for a start at a held rotation [1]")
 
@@ -246,7 +236,7 @@ def solve_motion(
     """
     require_model(mechanism)
     mechanism.effects.require_inertia()
-    run, check = Run(**asked), flag("check", check)
+    run, check = Run(**asked), read.flag("check", check)
     y, remark = np.zeros(structure_of(mechanism).size), ""
     if run.settled:
         y, remark = settled_state(mechanism, run.start, run.body, run.increments, starts=True)

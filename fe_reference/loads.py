@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import read
 from .arrays import Array, Indices, kernel
 from .effects import BodyDamping, Load, Spring, StripDamping
-from .errors import History
 from .matrix import Symmetric
 from .model import Model
 from .places import swept, turned
@@ -122,7 +122,7 @@ class Loads:
     @classmethod
     def of(cls, model: Model, points: Array) -> "Loads":
         """Return those of a model whose bodies are reduced about `points` (B, 2) [m]."""
-        rows, table, histories = [], [], list[History]()
+        rows, table, histories = [], [], list[read.History]()
         for load in model.effects.every(Load):
             if load.strip is not None:
                 row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)

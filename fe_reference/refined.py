@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from . import read
 from .arrays import Array
 from .effects import WAYS
-from .errors import positive
 from .model import Model
 from .response import CriticalPoint
 from .solution import ENERGIES, ErrorEstimate, StaticSolution, Status
@@ -57,7 +57,7 @@ def refine(
         errors. If the answer of a mesh is not complete, this answer without limits and estimate; but if
         coarser ones are and agree, round-off stopped it, and the best of these is returned.
     """
-    positive("accuracy", accuracy, "1")
+    read.positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []
     meshes: list[int] = []
     answer, best = solve(model), None

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from . import read
 from .arrays import Array
 from .control import require_balance, spans
 from .effects import WAYS, Prescribed
-from .errors import choice, count, finite, several
 from .law import FORCES
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
@@ -57,7 +57,7 @@ def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options:
     """
     require_model(pivot)
     pivot.body_index(None)
-    return solve_mechanism(pivot, rotation=several("rotation", rotation, "rad"), **options)
+    return solve_mechanism(pivot, rotation=read.several("rotation", rotation, "rad"), **options)
 
 
 def solve_mechanism(
@@ -127,7 +127,7 @@ def solve_mechanism(
     [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_model(mechanism)
-    ends = None if rotation is None else several("rotation", rotation, "rad")
+    ends = None if rotation is None else read.several("rotation", rotation, "rad")
 
     def solve(model: Model) -> StaticSolution:
         return _solved(model, body, ends, increments, progress, order=order)
@@ -155,7 +155,7 @@ def settled_state(
     """
     structure, led = structure_of(model), model.effects.every(Prescribed)
     load = structure.loads.factors(0.0 if starts else None)
-    ends = None if rotation is None else [finite("rotation", rotation, "rad")]
+    ends = None if rotation is None else [read.finite("rotation", rotation, "rad")]
     if not rotation and load is None and not _moving(led) and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
     solution = _solved(model, body, ends, increments, None, starts=starts).checked()
@@ -185,12 +185,12 @@ def _solved(
     starts: bool = False,
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
-    steps, structure = count("increments", increments), structure_of(model)
+    steps, structure = read.count("increments", increments), structure_of(model)
     led = model.effects.every(Prescribed)
     driven = rotations is not None or any(each.body is None for each in led)
     which = model.body_index(body) if driven or body is not None else None
     acting = structure.loads.factors(0.0 if starts else None)
-    first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
+    first = read.choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
     first = first and acting is not None and not _moving(led)  # a body that is led goes where both lead it
     controls = spans(structure, which, rotations, acting, first=first, starts=starts)
     path = follow(controls, steps, progress)
