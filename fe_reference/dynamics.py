@@ -284,26 +284,18 @@ def _integrate(model: Model, y: Array, run: Run) -> tuple[Samples, dict[str, flo
     return samples, settings | choices
 
 
-def checked(
-    model: Model,
-    motion: Trajectory,
-    *,
-    start: float | None,
-    body: str | None = None,
-    drive: DrivenRotation | None = None,
-) -> Trajectory:
+def checked(model: Model, motion: Trajectory, **held: Any) -> Trajectory:
     """Return a motion with its estimated errors [rad, m] and `resolution`, by companions of other elements.
 
     A motion that stopped and one of a few instants are returned as they are.
 
     Args:
-        model, body, drive: of the motion, which began in equilibrium.
-        start: rotation at the start [rad]; None: no rotation is driven.
+        model: of the motion, which began in equilibrium.
+        held: `start` [rad], `body` and `drive` of it, as of `Run`.
     """
     if motion.status is not Status.CONVERGED or len(motion.time) < 3:
         return motion
-    asked = {"start": start, "body": body, "drive": drive, "integrator": motion.settings["integrator"]}
-    remark = ""
+    asked, remark = held | {"integrator": motion.settings["integrator"]}, ""
     for elements in (model.elements // 2, 2 * model.elements):
         if elements >= FEWEST:
             try:

@@ -98,11 +98,8 @@ def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[St
     about that: at a constant velocity of it their moment of inertia about it is all that is left.
     """
     (attached, rows, offsets, rigid), own = structure.carried, _own_inertia(structure)
-    nodes, centres, carried = (
-        _lumped_nodes(structure)[attached],
-        structure.model.centres,
-        rows - structure.nodes,
-    )
+    nodes, centres = _lumped_nodes(structure)[attached], structure.model.centres
+    carried = rows - structure.nodes
     carrier = np.append(carried, np.arange(len(own)))
     masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid, own[:, 1])
     places = np.vstack([offsets + structure.points[carried], centres])
