@@ -2,6 +2,9 @@
 
 from typing import Any
 
+#: Residual norms of iterations, one tuple an attempt.
+Norms = tuple[tuple[float, ...], ...]
+
 
 class InvalidParameter(ValueError):
     """A parameter outside its domain; the message is one line "name: got X, expected Y [unit]".
@@ -34,12 +37,7 @@ class ConvergenceError(RuntimeError):
     """
 
     def __init__(
-        self,
-        message: str,
-        *,
-        solution: Any = None,
-        load_factor: float = 0.0,
-        history: tuple[tuple[float, ...], ...] = (),
+        self, message: str, *, solution: Any = None, load_factor: float = 0.0, history: Norms = ()
     ) -> None:
         super().__init__(message)
         self.solution = solution

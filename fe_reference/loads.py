@@ -20,7 +20,7 @@ import numpy as np
 
 from . import read
 from .arrays import Array, Indices, kernel
-from .effects import BodyDamping, Load, Spring, StripDamping
+from .effects import BodyDamping, Load, Spring
 from .matrix import Symmetric
 from .model import Model
 from .places import swept, turned
@@ -180,14 +180,14 @@ Links = tuple[int, Indices, Array, Array, Array]
 Parts = tuple[float, float, float]
 
 
-def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]]) -> Links:
+def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]], relaxation: float) -> Links:
     """Return the links of a model whose bodies are reduced about `points` (B, 2) [m].
 
-    soft: of the roots that give way: node, row of what it is on, and stiffness [N m].
+    soft: of the roots that give way: node, row of what it is on, and stiffness [N m]. relaxation: their time
+    of relaxation [s].
     """
     bodies, effects, found = len(model.bodies), model.effects, []
-    material, damper = effects.find(StripDamping), effects.find(BodyDamping)
-    relaxation = 0.0 if material is None else material.relaxation_time
+    damper = effects.find(BodyDamping)
     for node, row, stiffness in soft:
         if stiffness > 0.0:  # a hinge has none
             found.append((node, row, *(0.0,) * 6, stiffness, 0.0, 0.0, relaxation * stiffness))

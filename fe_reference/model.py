@@ -165,9 +165,8 @@ class Model:
         known = {None: FREE, FIXED: GROUND} | {name: k for k, name in enumerate(self.body_names)}
         for strip in self.strips:
             for name, there in (("root", strip.root), ("tip", strip.tip)):
-                if there not in known:
-                    expected = f"one of {', '.join([FIXED, *self.body_names])} [name]"
-                    raise InvalidParameter(name, there, expected)
+                if there is not None:
+                    read.choice(name, there, (FIXED, *self.body_names))
         return np.array([(known[strip.root], known[strip.tip]) for strip in self.strips], dtype=np.int64)
 
     @property

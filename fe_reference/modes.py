@@ -225,11 +225,8 @@ def _lowest(
     blurred = np.abs(energies - values) > BLURRED * np.abs(values)
     blurred[rigid] = False  # what nothing resists has round-off alone
     if blurred.any():
-        raise InvalidParameter(
-            "elements",
-            structure.stations - 1,
-            "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]",
-        )
+        expected = "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]"
+        raise InvalidParameter("elements", structure.stations - 1, expected)
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
     full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]

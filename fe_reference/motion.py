@@ -11,6 +11,7 @@ import numpy as np
 from .actions import couple, resist
 from .arrays import Array, Flags
 from .drives import Span
+from .errors import Norms
 from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
 from .mass import RigidBodies, carried_over
@@ -320,7 +321,7 @@ class Trajectory(Answer):
     states: Array
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
-    history: tuple[tuple[float, ...], ...]
+    history: Norms
     seconds: Mapping[str, float]
     starts_still: bool = False
     resolution: str = ""

@@ -57,11 +57,10 @@ class Explicit(Scheme):
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
         super().__init__(structure, bodies)
         if not np.all(self.mass > 0.0):
-            raise InvalidParameter(
-                "integrator",
-                "central-difference",
-                "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]",
+            expected = (
+                "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]"
             )
+            raise InvalidParameter("integrator", "central-difference", expected)
 
     def critical_step(self, y: Array, held: Flags) -> float:
         """Return a step [s] below which the scheme is stable for small motion about y (size,) [m, rad].
