@@ -174,12 +174,7 @@ class Control:
 
 
 def spans(
-    structure: Structure,
-    body: int | None,
-    rotations: Sequence[float] | None,
-    *,
-    first: bool,
-    starts: bool,
+    structure: Structure, body: int | None, rotations: Sequence[float] | None, *, first: bool, starts: bool
 ) -> list[Control]:
     """Return the spans of a path on which a body is driven through `rotations` [rad], one leg each.
 

@@ -128,12 +128,8 @@ class Run(read.Checked):
                         "remove strip_inertia, if strips are light, and take --integrator generalised-alpha "
                         f"with a --step (its own are about {implicit:.2g})"
                     )
-            raise InvalidParameter(
-                "duration",
-                self.duration,
-                f"at most {self.most_steps:.3g} steps of {step:.3g} s, this is {steps:.3g} of them: {way}; "
-                "or allow more by most_steps",
-            )
+            told = f"steps of {step:.3g} s, this is {steps:.3g} of them: {way}; or allow more by most_steps"
+            raise InvalidParameter("duration", self.duration, f"at most {self.most_steps:.3g} {told}")
         samples = min(self.samples, steps)
         if 2 * samples * size > MOST_NUMBERS:
             most = MOST_NUMBERS // (2 * size)

@@ -151,8 +151,8 @@ def limit_of(model: Model, accuracy: float, solve: Callable[[Model], StaticSolut
 
     found, refined, estimate = refine(model, accuracy, kept, quantities, JUDGED)
     if estimate is not None:
-        limits: dict[str, Any] = {each.name: refined.get(each.name) for each in fields(found)}
-        limits = {name: values for name, values in limits.items() if values is not None}
+        own = {each.name for each in fields(found)}
+        limits: dict[str, Any] = {name: values for name, values in refined.items() if name in own}
         for name in ("bodies", "tips"):
             limits[name] = dict(zip(getattr(found, name), limits[name], strict=True))
         told = missed(estimate)
