@@ -110,11 +110,8 @@ class Path:
         try:
             there = respond(control, replace(found, factors=control.factors(found, GRAIN)))
         except Singular as error:
-            raise InvalidParameter(
-                "strips",
-                "a model that can move freely",
-                "clamps that hold it, or stiffnesses less far apart [1]",
-            ) from error
+            expected = "clamps that hold it, or stiffnesses less far apart [1]"
+            raise InvalidParameter("strips", "a model that can move freely", expected) from error
         self.control = control
         self.states.append(there if last is None else replace(there, work=last.work, norms=last.norms))
 
