@@ -215,7 +215,6 @@ class Stepper(energy_consistent.Stepper):
         self.stages = 1 if grid.outer else 2
         w = np.linalg.lstsq(coordinates_by(model, state.y), start.v, rcond=None)[0]
         room = _Room.of(model, masses, grid)
-        self.record()  # fills what is given along the strips
         self._start = start
         self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
 
