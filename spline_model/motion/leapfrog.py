@@ -213,7 +213,9 @@ class Stepper(energy_consistent.Stepper):
         model, masses, state = self.model, self._masses, self.state
         grid = _Grid.of(model, masses)
         self.stages = 1 if grid.outer else 2
-        w = np.linalg.lstsq(coordinates_by(model, state.y), start.v, rcond=None)[0]
+        w = np.zeros(model.size)
+        if start.v.any():
+            w[:] = np.linalg.lstsq(coordinates_by(model, state.y), start.v, rcond=None)[0]
         room = _Room.of(model, masses, grid)
         self._start = start
         self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
