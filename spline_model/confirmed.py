@@ -98,7 +98,8 @@ def confirmed(outcome: Outcome, grid: Grid, *, searched: bool = False) -> Static
         apart = spread(answer.critical_points, better.critical_points)
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
-    return _cut(answer, better, grid, remedy(grid, searched))
+    advice = ("" if searched else "leave the number open, or ") + f"take segments = {2 * grid[0]}"
+    return _cut(answer, better, grid, advice)
 
 
 def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str) -> StaticSolution:
@@ -126,11 +127,6 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str
         message=message,
         critical_points=answer.critical_points[:known],
     )
-
-
-def remedy(grid: Grid, searched: bool = False) -> str:
-    """Return the advice for a discretisation and a finer one with different critical points or ends."""
-    return ("" if searched else "leave the number open, or ") + f"take segments = {2 * grid[0]}"
 
 
 def _place(load_factor: float, rotation: float) -> str:
