@@ -214,6 +214,11 @@ class ErrorEstimate:
     trials: tuple[int, ...]
 
     @property
+    def largest(self) -> float:
+        """Largest of the estimated relative errors [1], which ``accuracy`` is about."""
+        return largest(self.errors.values())
+
+    @property
     def remark(self) -> str:
         """Empty, or what is more uncertain than the accuracy."""
         return remark(self.errors, self.accuracy, named(self.segments, self.control_points))
