@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,11 +107,8 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str
     """The part of a path that is resolved, and what is not, with an advice."""
     more = finer(*grid)
     kept = _agreeing(answer, better)
-    known = 0
-    while spread(answer.critical_points[: known + 1], better.critical_points[: known + 1]) <= SAME_PLACE:
-        known += 1
-        if known >= len(answer.critical_points):
-            break
+    both = zip(answer.critical_points, better.critical_points, strict=False)
+    known = len(list(takewhile(lambda pair: spread(pair[:1], pair[1:]) <= SAME_PLACE, both)))
     doubt, other = answer.critical_points[known:], better.critical_points[known:]
     if doubt and not at_limit(answer):
         there = _place(other[0].load_factor, other[0].rotation) if other else "no state"
