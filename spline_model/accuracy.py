@@ -82,7 +82,7 @@ class Search(Generic[Found]):
 
     accuracy: float
     grid: Discretisation
-    most_segments: int
+    most_segments: int = MOST_SEGMENTS
     stuck: Callable[[tuple[Grid, ...]], bool] = lambda trials: False
     error: float = math.inf
     found: Found | None = None
@@ -179,17 +179,15 @@ def search(
     grid: Discretisation,
     accuracy: float,
     attempt: Callable[[Grid, Grid], tuple[float, Found] | None],
-    most_segments: int | None = None,
     **more: Any,
 ) -> Search[Found]:
     """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy`` [1].
 
     attempt: solves with two discretisations and returns the estimated error [1] of the first, and its answer,
-    or None if one of them has no answer; most_segments: largest number of segments of a strip; more: of a
-    ``Search``. Returns the finished search, whose ``found`` is the answer with the least estimated error.
+    or None if one of them has no answer; more: of a ``Search``. Returns the finished search, whose ``found``
+    is the answer with the least estimated error.
     """
-    most = MOST_SEGMENTS if most_segments is None else most_segments
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most, **more)
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, **more)
     while not outcome.ended:
         tried = attempt(outcome.at, finer(*outcome.at))
         outcome.judge(*((None,) if tried is None else tried))

@@ -72,11 +72,10 @@ def spread(one: Sequence[CriticalPoint], other: Sequence[CriticalPoint]) -> floa
 
 def ends_alike(one: StaticSolution, other: StaticSolution) -> bool:
     """Whether two paths met the same critical points and ended at the same one, or both reached their end."""
-    if spread(one.critical_points, other.critical_points) > SAME_PLACE or one.settled is not other.settled:
-        return False
-    if not (one.settled or one.critical_points):
-        return False
-    return one.status is other.status and at_limit(one) == at_limit(other)
+    met_alike = spread(one.critical_points, other.critical_points) <= SAME_PLACE
+    stopped_alike = one.status is other.status and at_limit(one) == at_limit(other)
+    somewhere = one.settled or bool(one.critical_points)
+    return met_alike and stopped_alike and somewhere and one.settled is other.settled
 
 
 def at_limit(path: StaticSolution) -> bool:
