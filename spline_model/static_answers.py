@@ -300,7 +300,7 @@ class StaticSolution(Tabulated):
         y = from_unknowns(model, self.states) if y is None else y
         at = 3 * [each.name for each in model.system.scene.bodies].index(body)
         own, tangents = np.arange(at, at + 3), model.energy * body_tangents(model, y, self.load_factor)
-        rest = np.setdiff1d(np.arange(tangents.shape[1]), [*own, *model.fixed])
+        rest = np.delete(np.arange(tangents.shape[1]), [*own, *model.fixed])
         found = tangents[:, own[:, None], own]
         if rest.size:
             inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
