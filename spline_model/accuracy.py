@@ -82,7 +82,7 @@ class Search(Generic[Found]):
 
     accuracy: float
     grid: Discretisation
-    most_segments: int = MOST_SEGMENTS
+    most_segments: int
     stuck: Callable[[tuple[Grid, ...]], bool] = lambda trials: False
     error: float = math.inf
     found: Found | None = None
@@ -187,7 +187,7 @@ def search(
     or None if one of them has no answer; more: of a ``Search``. Returns the finished search, whose ``found``
     is the answer with the least estimated error.
     """
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, **more)
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=MOST_SEGMENTS, **more)
     while not outcome.ended:
         tried = attempt(outcome.at, finer(*outcome.at))
         outcome.judge(*((None,) if tried is None else tried))
