@@ -21,7 +21,7 @@ from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.rigid import Unheld, props_of
 from spline_model.sections import STATIONS, curves
-from spline_model.solution import FrequencyEstimate
+from spline_model.solution import ErrorEstimate
 from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle, static_state
 
@@ -71,7 +71,7 @@ class Modes:
         Unknowns of the static state.
     segments, control_points : int
         Of a strip, and of each segment.
-    estimate : FrequencyEstimate or None
+    estimate : ErrorEstimate or None
         Of the error, if an accuracy was given.
     """
 
@@ -85,7 +85,7 @@ class Modes:
     state: Array
     segments: int
     control_points: int
-    estimate: FrequencyEstimate | None = None
+    estimate: ErrorEstimate | None = None
 
 
 def natural_frequencies(
@@ -188,9 +188,9 @@ def _accurate_modes(
     if strict and outcome.message:
         raise InvalidParameter("accuracy", accuracy, f"no less than {outcome.error:.2g}, which is reached")
     segments, points = outcome.best
-    estimate = FrequencyEstimate(
+    estimate = ErrorEstimate(
         accuracy=accuracy,
-        frequency=outcome.error,
+        errors={"frequency": outcome.error},
         segments=segments,
         control_points=points,
         trials=outcome.tried,

@@ -305,13 +305,11 @@ def static_state(
     pre-strain act in full; the multipliers of released displacements are excluded. starts: as in
     ``solve_mechanism``.
     """
-    mechanism = mechanism.propped(rotation is not None, body)
-    z = settle(mechanism, rotation, increments, body, starts=starts).states[-1]
-    driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
-    layout = driven.layout
-    constraints = enumerate(driven.of(Constraint))
-    kept = [i for i, each in constraints if not (isinstance(each, Driven) and (each.prop or each.lets_go))]
-    return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
+    path = settle(mechanism, rotation, increments, body, starts=starts)
+    z, scene = path.states[-1], path.system.scene
+    held = enumerate(scene.of(Constraint))
+    kept = [i for i, each in held if not (isinstance(each, Driven) and (each.prop or each.lets_go))]
+    return np.concatenate((z[: scene.layout.multiplier_start], *(z[scene.layout.rows(i)] for i in kept)))
 
 
 def settle(

@@ -184,15 +184,16 @@ def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float
 def hermite(known: Sequence[tuple[float, Any, Any]], at: Any) -> Any:
     """Return Hermite's polynomial through (place, value, slope) triples at a place or places, in their units.
 
-    It is of degree 2 k - 1 for k triples.
+    It is of degree 2 k - 1 for k triples. Values are taken from the last one: what does not change then has
+    no round-off.
     """
-    total = 0.0
+    total = last = known[-1][1]
     for i, (place, value, slope) in enumerate(known):
         share, lean = 1.0, 0.0
         for other in (each[0] for j, each in enumerate(known) if j != i):
             share = share * ((at - other) / (place - other)) ** 2
             lean += 2.0 / (place - other)
-        total = total + share * ((1.0 - (at - place) * lean) * value + (at - place) * slope)
+        total = total + share * ((1.0 - (at - place) * lean) * (value - last) + (at - place) * slope)
     return total
 
 
