@@ -76,7 +76,7 @@ class Strips(NamedTuple):
         along, own = np.zeros((len(bends), len(u), DROP + TERMS)), np.zeros((len(bends), 4))
         compliance = np.zeros((len(bends), modes.shape[1], modes.shape[1]))
         stretched = {e.strip: e for e in scene.of(Stretching)}
-        damped = {e.strip: e.relaxation_time for e in scene.of(StripDamping)}
+        own[:, RELAXATION] = sum(damping.relaxation_time for damping in scene.of(StripDamping))
         for s, (bend, parts) in enumerate(zip(bends, mixed, strict=True)):
             (x1, x2), (y1, y2) = (curve @ scene.strip(bend.strip).control_points).T
             speed, at = np.hypot(x1, y1), along[s].T
@@ -88,7 +88,6 @@ class Strips(NamedTuple):
             if bend.strip in stretched:
                 own[s, STRETCHING] = stretched[bend.strip].axial_rigidity
                 own[s, STRAIN] = stretched[bend.strip].natural_strain
-            own[s, RELAXATION] = damped.get(bend.strip, 0.0)
             done = 0
             for part_, value in zip(parts, values, strict=True):
                 own[s, STRAIN], block = part_.natural_strain, slice(done, done + part_.modes.count)

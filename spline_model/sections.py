@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.continuation.followed import balance
-from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
+from spline_model.effects import GROUND, Bending, Clamp, Gravity, MixedStretching, Stretching
 from spline_model.scene import Scene, Strip
 from spline_model.solution import read_only
 
@@ -112,14 +112,13 @@ def _pulls(system: System, states: Array, strips: list[Strip], stations: Array) 
 
     It is one for all stations where nothing has a weight, P = 1.
     """
-    weights = system.scene.of(StripGravity)
+    weights = system.scene.of(Gravity)
     pull = np.empty((2, len(stations) if weights else 1, len(states), len(strips)))
     for g, strip in enumerate(strips):
         pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
         for weight in weights:
-            if weight.strip == strip.name:
-                mass = weight.linear_density * strip.length_to(stations, strip.taper)
-                pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
+            mass = strip.linear_density * strip.length_to(stations, strip.taper)
+            pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
     return pull
 
 

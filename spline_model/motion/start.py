@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, MixedStretching, StripDamping
+from spline_model.effects import Bending, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
@@ -53,10 +53,7 @@ class Motion:
     @property
     def relaxation(self) -> Array:
         """Relaxation time of the axial modes (M,) [s]."""
-        scene = self.system.scene
-        times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
-        modes = scene.of(MixedStretching)
-        return np.array([times.get(effect.strip, 0.0) for effect in modes for _ in range(effect.modes.count)])
+        return np.full(len(self.rigidity), self.system.relaxation_time)
 
     @property
     def damped(self) -> bool:
