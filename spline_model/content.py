@@ -96,7 +96,7 @@ def _energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> 
     all of it.
     """
     system = motion.system
-    squares, shapes, slide = linear_modes(system, z, motion.system.mass)
+    squares, shapes, slide = linear_modes(system, z)
     push, speed = shapes.T @ motion.system.mass @ acceleration, shapes.T @ motion.system.mass @ v
     frequency = np.sqrt(np.maximum(squares, 0.0))
     stored = np.divide(push**2, np.abs(squares), out=np.zeros_like(push), where=squares != 0.0)
@@ -142,7 +142,7 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
         start = Start(set_in_motion(compile_scene(scene)), start.known, start.v)
     motion = start.motion
     system = motion.system
-    lowest = linear_modes(system, system.rest, motion.system.mass)[0][0]
+    lowest = linear_modes(system, system.rest)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
     return _resolution(_energy_content(motion, start.z, start.v, start.acceleration), swing, step)
 
@@ -212,7 +212,7 @@ class Task:
     def frequency(self) -> float:
         """Slowest circular frequency at rest [rad/s], 0 for none."""
         system = compile_scene(self.mechanism.released())
-        squares = linear_modes(system, system.rest, set_in_motion(system).system.mass)[0]
+        squares = linear_modes(system, system.rest)[0]
         return math.sqrt(max(float(squares[0]), 0.0))
 
     def run(self, n: int, integrator: str, step: float, records: int) -> Trajectory:

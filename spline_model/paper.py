@@ -115,19 +115,23 @@ class Strips(NamedTuple):
         return self._replace(along=along, own=own)
 
     def derivatives(self, z: Array) -> Array:
-        """Return x', y', x'', y'' by u at the unknowns z (N,), shape (4, S, P) [m]."""
+        """Return x', y', x'', y'' by u at the unknowns z (..., N), shape (4, ..., S, P) [m]."""
         places = self.first[:, None] + np.arange(2 * self.curve.shape[2])
-        found = self.curve @ z[places].reshape(len(places), 1, -1, 2)
-        return found.transpose(2, 3, 0, 1).reshape(4, *found.shape[:2])
+        found = self.curve @ z[..., places].reshape(*z.shape[:-1], len(places), 1, -1, 2)
+        return np.stack([found[..., order, axis] for order in range(2) for axis in range(2)])
+
+    def strains(self, z: Array) -> Array:
+        """Return what the axial forces see at the unknowns z (..., N), in their order: (..., S K) [m]."""
+        x, y, _, _ = self.derivatives(z)
+        gaps = np.hypot(x, y) - (1.0 + self.own[:, STRAIN, None]) * self.along[..., SPEED]
+        return np.asarray((self.weight * gaps @ self.modes).reshape(*z.shape[:-1], -1))
 
     def moments(self, z: Array) -> Array:
         """Return bending moments (S, P) at the unknowns z (N,) [N m]."""
         x1, y1, x2, y2 = self.derivatives(z)
-        square = x1**2 + y1**2
-        along = np.moveaxis(self.along, 2, 0)
+        square, along, curl = x1**2 + y1**2, np.moveaxis(self.along, 2, 0), self.own[:, CURL, None]
         speed = along[SPEED] if MEASURES[self.measure] == "material" else np.sqrt(square)
         strain = (x1 * y2 - y1 * x2) / square / speed - along[CURVATURE]
-        curl = self.own[:, CURL, None]
         factor = curl_factors(strain, self.along[..., DROP:], curl)[1] if curl.any() else 1.0
         return np.asarray(along[RIGIDITY] * strain * factor)
 

@@ -13,9 +13,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from inspect import signature
 from typing import TYPE_CHECKING, Any
 
-from spline_model.basis import AxialModes, SlideModes
+from spline_model.basis import SlideModes
 from spline_model.effects import base, elastic, outside
-from spline_model.effects.elastic import Taper
 from spline_model.errors import InvalidParameter, is_finite
 from spline_model.scene import Body, Effect
 
@@ -91,45 +90,28 @@ def _roots(design: Design, strip: StripDesign, reach: tuple[float, float]) -> tu
     return length * (reach[0] == 0.0), length * (reach[1] == 1.0 and strip.tip is not None)
 
 
-def _stretching(design: Design) -> Iterator[Effect]:
-    """Stretching of every strip: mixed, or by quadrature if the discretisation asks for it."""
-    grid = design.discretisation
+def _stretching(design: Design, stretches: bool = True) -> Iterator[Effect]:
+    """Stretching of every strip: mixed, or by quadrature if the discretisation asks for it.
+
+    stretches: whether they do; else they keep their length, the mixed form with zero compliance.
+    """
+    grid, slides = design.discretisation, design.discretisation.modes.count < design.discretisation.points - 1
     for strip, _, _ in design.pieces:
-        if grid.stretch != "consistent":
-            yield from _mixed(design, strip, 1.0 / strip.axial_rigidity)
+        given: dict[str, Any] = {"strip": strip.name, "natural_strain": design.pre_strain.get("strain", 0.0)}
+        given |= {"measure": grid.measure, "gauss_points": grid.quadrature}
+        if stretches and grid.stretch == "consistent":
+            if strip.taper is not None:
+                raise InvalidParameter("stretch", grid.stretch, f"mixed for the tapered {strip.name}")
+            yield elastic.Stretching(axial_rigidity=strip.axial_rigidity, **given)
             continue
-        if strip.taper is not None:
-            raise InvalidParameter("stretch", grid.stretch, f"mixed for the tapered {strip.name}")
-        yield elastic.Stretching(
-            strip=strip.name,
-            axial_rigidity=strip.axial_rigidity,
-            natural_strain=design.pre_strain.get("strain", 0.0),
-            measure=grid.measure,
-            gauss_points=grid.quadrature,
-        )
-
-
-def _inextensible(design: Design) -> Iterator[Effect]:
-    """Strips that keep their length: the mixed form with zero compliance."""
-    for strip, _, _ in design.pieces:
-        yield from _mixed(design, strip, 0.0)
-
-
-def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Effect]:
-    grid = design.discretisation
-    parts: list[tuple[float, AxialModes, Taper | None]] = [(compliance, grid.modes, strip.taper)]
-    slide = grid.slide * strip.flexural_rigidity / strip.length**2
-    if slide > 0 and grid.modes.count < grid.points - 1:
-        parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes), None))
-    for part, modes, taper in parts:
+        compliance = 1.0 / strip.axial_rigidity if stretches else 0.0
         yield elastic.MixedStretching(
-            strip=strip.name,
-            axial_compliance=part,
-            modes=modes,
-            taper=taper,
-            natural_strain=design.pre_strain.get("strain", 0.0),
-            gauss_points=grid.quadrature,
+            axial_compliance=compliance, modes=grid.modes, taper=strip.taper, **given
         )
+        if slides and grid.slide > 0:
+            slide = grid.slide * strip.flexural_rigidity / strip.length**2
+            modes = SlideModes(basis=grid.spline, axial=grid.modes)
+            yield elastic.MixedStretching(axial_compliance=1.0 / slide, modes=modes, **given)
 
 
 def root_length(root: float | str = "monolithic") -> float:
@@ -149,8 +131,8 @@ def root_length(root: float | str = "monolithic") -> float:
 
 REGISTRY: dict[str, Builder] = {
     "bending": _bending,
-    "stretching": _stretching,
-    "inextensible": _inextensible,
+    "stretching": lambda design: _stretching(design),
+    "inextensible": lambda design: _stretching(design, stretches=False),
     "strip_inertia": base.StripInertia,
     "section_rotary_inertia": base.SectionRotaryInertia,
     "body_inertia": base.BodyInertia,

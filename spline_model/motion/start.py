@@ -145,7 +145,7 @@ class Motion:
         system, layout = self._with_first_loads(), self.system.layout
         q, size, unit = slice(0, layout.coordinate_count), layout.size, system.scales.unit
         gradient, hessian = np.empty(size), np.empty((size, size))
-        free, rows = self._unconstrained(system, z, gradient, hessian)
+        free, rows = self._unconstrained(z)
         evaluate(system, free, 1.0, gradient, hessian)
         jacobian, force = hessian[rows][:, q].copy(), -gradient[q].copy()
 
@@ -175,19 +175,15 @@ class Motion:
         solved = scale * np.linalg.lstsq(matrix * scale[:, None] * scale, right, rcond=1e-14)[0]
         return solved[:count], solved[count:]
 
-    def _unconstrained(
-        self, system: System, z: Array, gradient: Array, hessian: Array
-    ) -> tuple[Array, Places]:
+    def _unconstrained(self, z: Array) -> tuple[Array, Places]:
         """Coordinates of z with the forces that their strains give and no others, and these others' rows."""
-        layout = system.layout
+        layout = self.system.layout
         count, end = layout.coordinate_count, layout.multiplier_start
         free = np.zeros(layout.size)
         free[:count] = z[:count]
-        evaluate(system, free, 1.0, gradient, hessian)
-        free[count:end] = self.rigidity @ gradient[count:end]
-        fixed = np.ones(layout.size, dtype=bool)
-        fixed[:count], fixed[count:end] = False, np.diag(self.rigidity) == 0
-        return free, np.flatnonzero(fixed)
+        free[count:end] = self.rigidity @ strips_of(self.system).strains(free)
+        soft = np.flatnonzero(np.diag(self.rigidity))
+        return free, np.delete(np.arange(count, layout.size), soft)
 
     def _with_first_loads(self) -> System:
         """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
