@@ -259,8 +259,8 @@ def _fill(z, problem, space):
     return bent + axial, slowest
 
 
-@called()
-def _fill_free(z, problem, space):
+@kernel()
+def strain_energy(z, problem, space):
     """The same without any axial force or multiplier; returns the strain energy [J].
 
     ``space.strains`` are those that the axial forces see: these count by the forces that strains give.
@@ -272,12 +272,6 @@ def _fill_free(z, problem, space):
     for k in range(strains.size):
         strains[k] = space.gradient[count + k]
     return energy + 0.5 * _product(problem.rigidity, strains, strains)
-
-
-@kernel()
-def strain_energy(z, problem, space):
-    """Return the strain energy [J] at z (N,), the axial forces being those that the strains give."""
-    return _fill_free(z, problem, space)
 
 
 @called()
@@ -385,7 +379,7 @@ def _printed_advance(moving, h, problem, space):
     most = status[ENERGY] + abs(_fallen(z, moving.begun, problem)) + FROM_REST * problem.energy
     copy(v, moving.earlier[1])
     copy(z[:count], moving.earlier[0])
-    _fill_free(z, problem, space)
+    strain_energy(z, problem, space)
     _fill_drag(z, problem, space)
     for k in range(space.rates.size):
         space.rates[k] = _row_times(matrix, count + k, v)

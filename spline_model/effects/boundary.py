@@ -29,9 +29,9 @@ FORCE, MOMENT, FOLLOWER = range(3)
 """Kinds of components of loads; a follower's two stand one behind the other."""
 
 
-def _factor_of(history: History, time: float) -> float:
-    """The factor at an instant [s]."""
-    times, factors = zip(*history, strict=True)
+def _factor_of(history: History | None, time: float) -> float:
+    """The factor at an instant [s]; 1 without a history."""
+    times, factors = zip(*(history or STEADY), strict=True)
     return float(np.interp(time, times, factors))
 
 
@@ -127,10 +127,6 @@ class Driven(Constraint):
 
     def at(self, time: float) -> Self:
         """The drive with what it has at an instant [s] of a motion."""
-        return self if self.history is None else self._times(_factor_of(self.history, time))
-
-    def _times(self, factor: float) -> Self:
-        """The drive times a factor."""
         raise NotImplementedError
 
 
@@ -173,8 +169,9 @@ class DrivenRotation(Driven):
         """The rotation [rad] under its axis, 2."""
         return {2: self.angle}
 
-    def _times(self, factor: float) -> Self:
-        return replace(self, angle=factor * self.angle)
+    def at(self, time: float) -> Self:
+        """The drive with what it has at an instant [s] of a motion."""
+        return replace(self, angle=_factor_of(self.history, time) * self.angle)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -215,8 +212,9 @@ class DrivenDisplacement(Driven):
         """The prescribed displacements [m] under their axes, 0 and 1."""
         return {axis: part for axis, part in enumerate(self.displacement) if part is not None}
 
-    def _times(self, factor: float) -> Self:
-        x, y = (None if moved is None else factor * moved for moved in self.displacement)
+    def at(self, time: float) -> Self:
+        """The drive with what it has at an instant [s] of a motion."""
+        x, y = (part and _factor_of(self.history, time) * part for part in self.displacement)
         return replace(self, displacement=(x, y))
 
 
