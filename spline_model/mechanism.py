@@ -252,7 +252,7 @@ def compliant_mechanism(
         ),
         bodies=(
             *(
-                Body(**asdict(body) | {"centre": np.asarray(body.centre, dtype=float), "joint": joint})
+                Body(**vars(body) | {"centre": np.asarray(body.centre, dtype=float), "joint": joint})
                 for joint, own in ((False, bodies), (True, design.joints))
                 for body in own
             ),

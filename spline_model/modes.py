@@ -21,7 +21,7 @@ from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.rigid import Unheld, props_of
-from spline_model.sections import STATIONS, by_piece
+from spline_model.sections import curves
 from spline_model.solution import FrequencyEstimate
 from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle, static_state
@@ -229,17 +229,9 @@ def _modes(
     slide = share > SLIDE_SHARE
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
     kept = np.flatnonzero(~slide)[:count]
-    shapes = [
-        [
-            strip.basis.evaluate(at)
-            @ np.moveaxis(vectors[layout.strip(strip.name)][:, kept].reshape(-1, 2, len(kept)), 2, 0)
-            for strip in strips
-        ]
-        for strips, at in by_piece(system.scene, STATIONS)
-    ]
     return Modes(
         frequency=frequency[kept],
-        shapes=np.concatenate([np.stack(part, axis=1) for part in shapes], axis=2),
+        shapes=curves(system, vectors[:, kept].T, 0),
         body_shapes=np.zeros((len(kept), 3)) if body is None else vectors[layout.body(body)][:, kept].T,
         bodies={each.name: vectors[layout.body(each.name)][:, kept].T for each in system.scene.own_bodies},
         slide_frequency=frequency[slide],

@@ -15,7 +15,7 @@ from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.paper import strips_of
 from spline_model.scene import Scene
-from spline_model.sections import STATIONS, Sections, by_piece, reactions, sections
+from spline_model.sections import STATIONS, Sections, by_piece, curves, reactions, sections
 
 Array = NDArray[np.float64]
 
@@ -128,7 +128,7 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
         states = _with_axial_forces(system, states)
     layout, along = system.layout, sections(system, states, STATIONS)
     (rest_shape, rest), arc = _at_rest(scene)
-    tangent, bend = (_curve(system, states, order) for order in (1, 2))
+    tangent, bend = (curves(system, states, order) for order in (1, 2))
     speed, rest_speed = np.linalg.norm(tangent, axis=-1), np.linalg.norm(rest, axis=-1)
     rotation = np.unwrap(np.arctan2(_cross(rest, tangent), np.sum(rest * tangent, axis=-1)), axis=-1)
     for g, root in enumerate(strip.root for strip in mechanism.design.strips):
@@ -156,15 +156,6 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
         rest_bodies=np.array([body.centre for body in mechanism.design.bodies]).reshape(-1, 2),
         bodies=states[:, layout.poses].reshape(len(states), -1, 3)[:, : len(scene.own_bodies)],
     )
-
-
-def _curve(system: System, states: Array, order: int) -> Array:
-    """That derivative of the strips' curves at the stations, in the u of their pieces (S, G, P, 2)."""
-    layout, parts = system.layout, []
-    for strips, at in by_piece(system.scene, STATIONS):
-        points = [states[:, layout.strip(strip.name)].reshape(len(states), -1, 2) for strip in strips]
-        parts.append(strips[0].basis.evaluate(at, order) @ np.stack(points, axis=1))
-    return np.concatenate(parts, axis=2)
 
 
 def _at_rest(scene: Scene) -> tuple[tuple[Array, Array], Array]:

@@ -51,6 +51,18 @@ def by_piece(scene: Scene, stations: Array) -> list[tuple[list[Strip], Array]]:
     return [([each[k] for each in wholes], (count * stations - k)[piece == k]) for k in range(count)]
 
 
+def curves(system: System, states: Array, order: int) -> Array:
+    """Return that derivative of the strips' curves at STATIONS, in the u of their pieces (S, G, P, 2) [m].
+
+    states (S, N or Q): unknowns, or their rates or shapes.
+    """
+    layout, parts = system.layout, []
+    for strips, at in by_piece(system.scene, STATIONS):
+        points = [states[:, layout.strip(strip.name)].reshape(len(states), -1, 2) for strip in strips]
+        parts.append(strips[0].basis.evaluate(at, order) @ np.stack(points, axis=1))
+    return np.concatenate(parts, axis=2)
+
+
 def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:
     """Return the sections of all strips at ``stations`` (P,), u in [0, 1], of states (S, N).
 

@@ -81,7 +81,9 @@ class LoadTable(NamedTuple):
     def of(cls, scene: Scene, followers: bool = False) -> LoadTable:
         """Return dead forces and moments on bodies that grow, and ``followers``, one row a component."""
         growing = [load for load in scene.of(AppliedLoad) if not load.steady]
-        table = _table_of_loads(scene, growing) if growing else NO_LOADS
+        if not growing:
+            return NO_LOADS
+        table = _table_of_loads(scene, growing)
         return table if followers else table.rows(table.turns != FOLLOWER)
 
     def rows(self, kept: NDArray[np.bool_]) -> LoadTable:
