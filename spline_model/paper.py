@@ -89,9 +89,9 @@ class Strips(NamedTuple):
                 own[s, STRETCHING] = stretched[bend.strip].axial_rigidity
                 own[s, STRAIN] = stretched[bend.strip].natural_strain
             done = 0
-            for part_, value in zip(parts, values, strict=True):
-                own[s, STRAIN], block = part_.natural_strain, slice(done, done + part_.modes.count)
-                soft = weight * speed * part_.compliance_at(u)
+            for each, value in zip(parts, values, strict=True):
+                own[s, STRAIN], block = each.natural_strain, slice(done, done + each.modes.count)
+                soft = weight * speed * each.compliance_at(u)
                 compliance[s, block, block], done = value.T @ (soft[:, None] * value), block.stop
         return cls(
             first=np.array([layout.strips[bend.strip][0] for bend in bends], dtype=np.int64),
