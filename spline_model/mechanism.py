@@ -13,9 +13,8 @@ import numpy as np
 from spline_model.compile import System, compile_scene
 from spline_model.design import HINGE, LARGEST_OPENING, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, motion_penalty_stiffness
-from spline_model.effects import Clamp, Driven, DrivenRotation
+from spline_model.effects import AppliedLoad, Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import (
     DEFAULT_EFFECTS,
@@ -163,8 +162,7 @@ class Mechanism:
 
     def at_start(self) -> Self:
         """Return the mechanism with loads and drives at their values at the start of a motion."""
-        timed = Sized | Driven
-        effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
+        effects = (e.at(0.0) if isinstance(e, AppliedLoad | Driven) else e for e in self.scene.effects)
         return replace(self, scene=replace(self.scene, effects=tuple(effects)))
 
 
@@ -254,12 +252,14 @@ def compliant_mechanism(
                 control_points=piece.control_points(grid.spline),
                 of=whole.name,
                 taper=piece.taper,
+                linear_density=piece.linear_density,
+                rotary_density=piece.density * piece.second_moment_of_area,
             )
             for piece, whole, _ in design.pieces
         ),
         bodies=(
             *(
-                Body(name=body.name, centre=np.asarray(body.centre, dtype=float), joint=joint)
+                Body(**vars(body) | {"centre": np.asarray(body.centre, dtype=float), "joint": joint})
                 for joint, own in ((False, bodies), (True, design.joints))
                 for body in own
             ),

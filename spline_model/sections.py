@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import Bezier
 from spline_model.compile import System
-from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
+from spline_model.effects import GROUND, Bending, Clamp, Gravity, MixedStretching, Stretching
 from spline_model.scene import Scene, Strip
 from spline_model.solution import read_only
 from spline_model.strip.compiled import called, kernel
@@ -79,7 +79,7 @@ def sections(system: System, states: Array, stations: Array, *, balanced: bool =
     """
     scene, size = system.scene, (len(states), len(system.scene.whole), len(stations))
     axial, moment, shear, shape = *np.empty((3, *size)), np.empty((*size, 2))
-    weights = scene.of(StripGravity)
+    weights = scene.of(Gravity)
     done = 0
     for strips, at in by_piece(scene, stations):
         inside = slice(done, done + len(at))
@@ -91,9 +91,8 @@ def sections(system: System, states: Array, stations: Array, *, balanced: bool =
         for g, strip in enumerate(strips if weights else ()):
             dead[g] = scene.weight_of(strip.name)
             for weight in weights:
-                if weight.strip == strip.name:
-                    mass = weight.linear_density * strip.length_to(at, strip.taper)
-                    borne[g] += np.multiply.outer(weight.acceleration, mass)
+                mass = strip.linear_density * strip.length_to(at, strip.taper)
+                borne[g] += np.multiply.outer(weight.acceleration, mass)
         tables, lanes = _tables(strips[0].basis, at.tobytes()), np.empty((6, len(at)))
         where = np.array((places, clamps))
         _balance(np.ascontiguousarray(states), where, tables, at, dead, borne, bool(weights), lanes, found)

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from spline_model.accuracy import answered
 from spline_model.compile import System, compile_scene
 from spline_model.confirmed import Grid
-from spline_model.effects import Driven
+from spline_model.effects import AppliedLoad, Driven
 from spline_model.effects.base import Constraint, Load
-from spline_model.effects.boundary import Sized
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import (
     InvalidParameter,
@@ -226,7 +225,7 @@ def has_loads(scene: Scene) -> bool:
 def steady(scene: Scene) -> Scene:
     """Return the scene with loads and driven displacements in full at any load factor."""
     effects = (
-        replace(e, steady=True) if isinstance(e, Sized) or (isinstance(e, Driven) and e.beside) else e
+        replace(e, steady=True) if isinstance(e, AppliedLoad) or (isinstance(e, Driven) and e.beside) else e
         for e in scene.effects
     )
     return replace(scene, effects=tuple(effects))

@@ -11,7 +11,6 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import StripDamping
 from spline_model.frames import Frames
 from spline_model.motion.start import Motion
 from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE, Reduced, in_units
@@ -62,7 +61,6 @@ class Masses(NamedTuple):
         (inertia, points, _), (friction, damping, across) = (_parts(model, each) for each in (mass, drag))
         basis = model.shape.tables[FIRST : SECOND + 1]
         pairs = [np.einsum("gi,gj->gij", one, other) for one in basis for other in basis]
-        time = {e.strip: e.relaxation_time for e in model.system.scene.of(StripDamping)}
         c = strips.compliance
         small = c < LEAST_COMPLIANCE
         outer = c.shape[1] if small[:, strips.split :].any() else strips.split if small.any() else 0
@@ -73,7 +71,7 @@ class Masses(NamedTuple):
             drag=friction,
             points=points,
             damping=damping,
-            relaxation=np.array([time.get(name, 0.0) for name in layout.strips]),
+            relaxation=np.full(len(layout.strips), model.system.relaxation_time),
             pairs=np.stack(pairs, axis=1).reshape(len(pairs[0]), 4, -1),
             loads=loads._replace(value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy),
             load_at=loads.coordinate - layout.poses.start,

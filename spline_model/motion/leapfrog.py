@@ -251,9 +251,7 @@ def critical_step(motion: Motion, z: Array) -> float:
 def highest_frequency(motion: Motion, z: Array) -> float:
     """Return the highest circular frequency at a state and at rest [rad/s]."""
     system = motion.system
-    return math.sqrt(
-        max(linear_modes(system, state, motion.system.mass)[0][-1] for state in (z, system.rest))
-    )
+    return math.sqrt(max(linear_modes(system, state)[0][-1] for state in (z, system.rest)))
 
 
 def require_explicit(motion: Motion) -> None:
