@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any, Literal, Self, Unpack
 
@@ -61,7 +61,7 @@ class Mechanism:
             bodies=self.design.bodies,
             effects=self.effects,
             parameters=self.parameters,
-            **(asdict(grid) | changes),
+            **({each.name: getattr(grid, each.name) for each in fields(grid)} | changes),
         )
         return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
