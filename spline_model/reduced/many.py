@@ -124,16 +124,15 @@ def follow_all(share, route, judged, arrays, tolerance, answer):
         )  # fmt: skip
         for k in range(answer.counters.size):
             answer.counters[k] = 0
-        # a copy: the poses at rest are those of the bodies
-        copy(designs.start[i], answer.y[0])
-        begin, stands, done = answer.y[0], True, 0
-        if growing.factor.size > 0:
-            done = follow(begin, growing, judged, preload, own, tolerance, answer)
-            stands = done == growing.factor.size
-            copy(answer.y[1], answer.y[0])
-            done = 0
-        if stands:
-            done = follow(begin, route, judged, preload, own, tolerance, answer)
+        copy(designs.start[i], answer.y[0])  # what is at rest stays with the bodies
+        done, stands = 0, True
+        for grows in (True, False):
+            leg = growing if grows else route
+            if stands and leg.factor.size > 0:
+                done = follow(answer.y[0], leg, judged, preload, own, tolerance, answer)
+                if grows:
+                    stands, done = done == leg.factor.size, 0
+                    copy(answer.y[1], answer.y[0])
         states[row] = done
         iterations[row] = answer.counters[ITERATIONS]
         length, unit = designs.length[i], designs.energy[i]
