@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any, Literal, Self, Unpack
 
@@ -62,7 +62,7 @@ class Mechanism:
             bodies=self.design.bodies,
             effects=self.effects,
             parameters=self.parameters,
-            **(asdict(grid) | changes),
+            **({each.name: getattr(grid, each.name) for each in fields(grid)} | changes),
         )
         return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
@@ -107,9 +107,8 @@ class Mechanism:
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """Return the scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
-        scene = self.scene.with_effects(drive)
-        vars(scene)["structure"] = self.scene.structure.setdefault(("driven", drive.body), {})
-        return scene
+        shared = self.scene.structure.setdefault(("driven", drive.body), {})
+        return self.scene.with_effects(drive).sharing(shared)
 
     def system(self, rotation: float | None = None, body: str | None = None) -> System:
         """Return the system of the scene, with a body's ``rotation`` [rad] driven where one is given.
@@ -269,8 +268,7 @@ def compliant_mechanism(
     )
     if not given:
         joined = tuple((s.name, s.root, s.tip, s.root_joint, s.tip_joint) for s in strips)
-        shared = _structure(joined, tuple(body.name for body in bodies), names, grid)
-        vars(scene)["structure"] = shared
+        scene.sharing(_structure(joined, tuple(body.name for body in bodies), names, grid))
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
 
 

@@ -144,8 +144,13 @@ class Scene:
 
     @cached_property
     def structure(self) -> dict[Any, Any]:
-        """What does not go by the numbers of a scene, by name; many scenes may share it."""
+        """What does not go by the numbers of a scene, by name: it is that of all scenes which share it."""
         return {}
+
+    def sharing(self, structure: dict[Any, Any]) -> Scene:
+        """The scene itself, with that structure: of scenes that differ in numbers only."""
+        vars(self).update(structure=structure)
+        return self
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""

@@ -47,6 +47,11 @@ class DriveTable(NamedTuple):
     @classmethod
     def of(cls, scene: Scene) -> Self:
         """The driven rotations and displacements, one row a coordinate."""
+        shared, turned = scene.structure, scene.turned
+        alone = scene.of(Driven) == (turned,)
+        if turned is not None and alone and not turned.steady and "drives" in shared:
+            known: Self = shared["drives"]
+            return known._replace(target=np.array([turned.angle]))
         rows, histories = [], []  # type: list[tuple[float, ...]], list[History]
         for i, drive in enumerate(scene.of(Constraint)):
             if not isinstance(drive, Driven):
@@ -59,7 +64,10 @@ class DriveTable(NamedTuple):
                 rows.append((*kind, *drive.held))
                 histories.append(drive.history or STEADY)
         names = ("coordinate", "origin", "target", "row", "turns", "prop", "begin", "until")
-        return cls(**_columns(names, rows), **_histories(histories))
+        table = cls(**_columns(names, rows), **_histories(histories))
+        if alone:
+            shared["drives"] = table
+        return table
 
 
 class LoadTable(NamedTuple):
