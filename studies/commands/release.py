@@ -99,27 +99,36 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
-    """Return duration and step [s] as given, or as suit the first mode at rest, after all histories.
+    """Return duration and step [s] as given, or as the design's first frequency asks for.
+
+    A step only of the implicit splines: what is explicit, or has an accuracy, has steps of its own, and so
+    have the elements.
+    """
+    implicit = arguments.integrator in (None, "energy") and arguments.accuracy is None
+    free = settings.model == "spline" and implicit and arguments.step is None
+    duration, step = arguments.duration, arguments.step
+    if duration is None or free:
+        usual, fine = _usual(design, settings)
+        duration = usual if duration is None else duration
+        step = min(fine, duration) if free and fine is not None else step
+    return duration, step
+
+
+def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
+    """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives.
 
     Of an unstable mode the duration is that in which it grows twentyfold. What has rigid motions alone has
-    the usual duration. A step is chosen for the implicit splines alone: what is explicit, or has an accuracy,
-    has steps of its own, and so have the elements.
+    the usual duration, in the model's own steps.
     """
-    duration, step = arguments.duration, arguments.step
-    implicit = arguments.integrator in (None, "energy") and arguments.accuracy is None
-    chosen = settings.model == "spline" and implicit and step is None
-    if duration is not None and not chosen:
-        return duration, step
     found = answer_modes(_without_followers(design), settings, count=MODES + RIGID)
     frequency = np.sort(np.abs(found.frequency[found.frequency != 0.0]))[:MODES]
-    known = found.converged and frequency.size > 0
-    first = float(frequency[0]) if known else SWINGS / USUAL
-    if duration is None:
-        duration = _last_time(design) + (GROWTH if known and found.falls_in else SWINGS) / first
-    if chosen and known:
-        last = float(frequency[frequency <= FASTEST * first].max())
-        step = min(1.0 / max(STEPS * first, LEAST_STEPS * last), duration)
-    return duration, step
+    led = _last_time(design)
+    if not found.converged or not frequency.size:
+        return led + USUAL, None
+    first = float(frequency[0])
+    last = float(frequency[frequency <= FASTEST * first].max())
+    swings = GROWTH if found.falls_in else SWINGS
+    return led + swings / first, 1.0 / max(STEPS * first, LEAST_STEPS * last)
 
 
 def _without_followers(design: Design) -> Design:

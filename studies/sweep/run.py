@@ -101,7 +101,7 @@ def sweep(
 def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way.
 
-    An interruption may come while the queue is waited for: unlike `futures.wait`, it then leaves no locks.
+    An interruption may come while this waits for the queue: unlike `futures.wait`, it then leaves no locks.
     """
     ended: SimpleQueue[futures.Future[pa.Table]] = SimpleQueue()
     pending: dict[futures.Future[pa.Table], int] = {}
