@@ -29,7 +29,7 @@ designs may be the factor above is exceeded, and no error of 0.05 may pass witho
 def read_only(given: T) -> T:
     """Return the same array, or the same container of arrays, after its arrays were set to read only."""
     if isinstance(given, np.ndarray):
-        given.flags.writeable = False
+        given.setflags(write=False)
     elif isinstance(given, dict | tuple):
         for each in given.values() if isinstance(given, dict) else given:
             read_only(each)
@@ -143,7 +143,9 @@ class Tabulated:
     status: Status
 
     def __post_init__(self) -> None:
-        read_only(vars(self))
+        for each in vars(self).values():
+            if isinstance(each, (np.ndarray, dict)):
+                read_only(each)
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of a table: arrays (S,) of one number in every row, by names with units."""
