@@ -10,16 +10,7 @@ from studies.cases.design import document_of
 from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds
 from studies.design.optimise import OUTSIDE, Programme, numbered, optimise, search
 from studies.design.question import Question
-from studies.design.sizing import (
-    AGAIN,
-    BEAMS,
-    EFFECTS,
-    TABLE_ONE,
-    asked,
-    error,
-    sizes_of,
-    toleranced,
-)
+from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TABLE_ONE, asked, error, sizes_of, toleranced
 from studies.errors import BadInput
 from studies.record.progress import silent
 from studies.record.store import Store

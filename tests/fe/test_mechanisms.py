@@ -18,17 +18,7 @@ from fe_reference import (
     solve_statics,
     strip_fields,
 )
-from tests.fe.scenes import (
-    GUIDE,
-    PARAMETERS,
-    SIDED,
-    TIP,
-    WIDE,
-    four_bar,
-    free_cantilever,
-    pivot,
-    tipped,
-)
+from tests.fe.scenes import GUIDE, PARAMETERS, SIDED, TIP, WIDE, four_bar, free_cantilever, pivot, tipped
 from tests.frames import heavy
 from tests.gates import hold
 from tests.models import QUICK_ELEMENTS, extrapolated, scene
@@ -118,10 +108,6 @@ def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> No
         return abs(stiffness - (ends[0] - ends[1]) / (2.0 * step)) / MOMENT
 
     hold("fe_weight_stiffness", error)
-
-
-#: What strips ten times thinner have of a section.
-THINNER = {"area": 0.1, "second_moment_of_area": 1e-3}
 
 
 @pytest.mark.parametrize("element", ELEMENTS)

@@ -14,10 +14,7 @@ from tests.interactive.films import film
 from tests.interactive.pages import canvas, load, turned, typed
 from tests.interactive.test_browser_film import pixels
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH"),
-]
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
 
 
 #: Where a clamp of a strip's end is on the page [px], and what is dragged of the design.

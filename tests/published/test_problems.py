@@ -10,15 +10,7 @@ import pytest
 from studies.cases.document import CaseError
 from studies.errors import Unanswered
 from studies.published import calculix, problems, solid_pivot
-from studies.published.case import (
-    AT_MOST,
-    EQUAL,
-    FOLDER,
-    LIMIT_POINTS,
-    Value,
-    published,
-    read_published,
-)
+from studies.published.case import AT_MOST, EQUAL, FOLDER, LIMIT_POINTS, Value, published, read_published
 from studies.published.problems import ours
 from studies.published.solids import COMPARED, PIVOT, STIFF, Design
 from studies.record.store import Store

@@ -2,17 +2,7 @@
 
 import pytest
 
-from report.forms import (
-    count,
-    decade,
-    degrees,
-    percent,
-    seconds,
-    signed_percent,
-    significant,
-    times,
-    unit,
-)
+from report.forms import count, decade, degrees, percent, seconds, signed_percent, significant, times, unit
 
 
 @pytest.mark.parametrize(

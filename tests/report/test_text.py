@@ -18,8 +18,7 @@ def test_no_number_is_typed(path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "functions"),
-    [("facts", ("fact",)), ("holds", ("supported",)), ("listings", ("listing",))],
+    ("kind", "functions"), [("facts", ("fact",)), ("holds", ("supported",)), ("listings", ("listing",))]
 )
 def test_what_is_given_is_quoted(kind, functions):
     """Every fact, condition and table is used by a section or a page, and every one that is used is given."""

@@ -16,10 +16,7 @@ from tests.table_one import TABLE_ONE
 
 QUARTER = math.pi / 2
 #: Table 1 and a slender design far from symmetric, with rotations [rad]; the study of the estimate has 36.
-DESIGNS = (
-    ({}, QUARTER),
-    ({"crossing_ratio": 0.87, "area": 5e-6, "second_moment_of_area": 1.041e-13}, 1.5),
-)
+DESIGNS = (({}, QUARTER), ({"crossing_ratio": 0.87, "area": 5e-6, "second_moment_of_area": 1.041e-13}, 1.5))
 
 
 def pivot(**settings):

@@ -19,12 +19,7 @@ PARAMETERS = (*KEYWORDS, "thickness", "width")
 #: Quantities of shape alone, and what does not move with a parameter.
 SHAPES = ("centre", "body_shift", "centre_shift")
 UNMOVED = {"youngs_modulus": SHAPES, "width": (*SHAPES, "fibre_stress")}
-FORMS = (
-    {},
-    {"control_points": 8},
-    {"stretch": "consistent"},
-    {"control_points": 5, "axial_modes": 3},
-)
+FORMS = ({}, {"control_points": 8}, {"stretch": "consistent"}, {"control_points": 5, "axial_modes": 3})
 
 #: All loads of a pivot, of a size that is seen.
 LOADED = {

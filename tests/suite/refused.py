@@ -25,7 +25,7 @@ CHANGED = {
     ],
     "converge cross_axis_pivot": [("= 90 ", "= 0 ", "drive.rotation_deg: got 0, expected a rotation")],
     "release four_bar_of_flexures": [
-        ("rotation_deg = 20", "held_s = [0, 1]", "drive.rotation_deg: got none, expected the rotation"),
+        ("rotation_deg = 20", "held_s = [0, 1]", "drive.rotation_deg: got none, expected the rotation")
     ],
     "solve four_bar_of_flexures": [
         ('"gravity"]', '"gravty"]', "scene.effects: got gravty, expected gravity (the nearest name)"),

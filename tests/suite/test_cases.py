@@ -127,11 +127,7 @@ def test_a_strip_has_its_own_section_and_material(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("table", "expected"),
-    [
-        ("acceleration_m_per_s2 = [1.62, 0]", (1.62, 0.0)),
-        ("", (0.0, -9.81)),
-    ],
+    ("table", "expected"), [("acceleration_m_per_s2 = [1.62, 0]", (1.62, 0.0)), ("", (0.0, -9.81))]
 )
 def test_gravity_by_its_parts(table, expected, case):
     """Gravity is given by its two parts, downwards if unsaid."""

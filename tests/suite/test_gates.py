@@ -149,11 +149,7 @@ HELD = {"agreement": 7, "fe": 7, "cost": 5, "design": 5, "interactive": 5}
 #: Solutions of one model that stand for the same state, to the tolerance of its paths and motions.
 SAME = {"test_loads_release.py": 1}
 #: What theory leaves: the next order of a closed form, a difference for a derivative, the digits of a table.
-THEORY = {
-    "test_readout.py": 3,
-    "test_shell.py": 1,
-    "test_solid.py": 1,
-}
+THEORY = {"test_readout.py": 3, "test_shell.py": 1, "test_solid.py": 1}
 #: What the page promises of what it shows, coarser than it is.
 PROMISED = {
     "test_browser_answers.py": 1,

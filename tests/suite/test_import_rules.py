@@ -12,10 +12,7 @@ from studies.record.files import forget_stale
 from studies.record.source import PACKAGES, ROOT, imported, imports, reached, source_hash
 from studies.registry import STUDIES
 
-MODELS = {
-    "spline_model": {"numpy", "scipy", "numba"},
-    "fe_reference": {"numpy", "scipy", "numba", "skfem"},
-}
+MODELS = {"spline_model": {"numpy", "scipy", "numba"}, "fe_reference": {"numpy", "scipy", "numba", "skfem"}}
 #: Files of a model in which an answer becomes a table of pandas, loaded when it is asked for.
 FRAMES = {"solution.py", "trajectory.py"}
 

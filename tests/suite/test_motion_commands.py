@@ -70,11 +70,7 @@ def test_modes_beyond_those_that_there_are_told(case, command):
 
 @pytest.mark.parametrize("verb", ["release", "modes"])
 @pytest.mark.parametrize(
-    "model",
-    [
-        ["fe", "--elements", 1],
-        ["spline", "--stretch", "inextensible", "--control-points", 6],
-    ],
+    "model", [["fe", "--elements", 1], ["spline", "--stretch", "inextensible", "--control-points", 6]]
 )
 def test_state_that_statics_cannot_reach(verb, model, case, command):
     """A start that statics does not reach is exit code 3, without a record, and says where it stopped."""

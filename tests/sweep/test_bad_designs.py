@@ -32,10 +32,7 @@ BAD = [
     ({"set": "set.settings.control_points = 4"}, "got a setting, expected it in [settings]"),
     ({"analysis": 'analysis.kind = "statics"'}, "expected static (the nearest name)"),
     ({"analysis": "analysis.duration_s = 1"}, "analysis.duration_s: got an unknown key"),
-    (
-        {"sample": 'sample = { method = "sobol", points = 0 }'},
-        "sample.points: got 0, expected a whole",
-    ),
+    ({"sample": 'sample = { method = "sobol", points = 0 }'}, "sample.points: got 0, expected a whole"),
     ({"sample": 'sample = { method = "sobol" }'}, "sample.points: got no such key"),
     ({"sample": 'sample = { method = "grid", points = 8 }'}, "sample.points: got it for a grid"),
     ({"vary": ""}, "[vary]: got nothing to vary"),
