@@ -7,17 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-import fe_reference
-from fe_reference import (
-    DEFAULT_EFFECTS,
-    ELEMENTS,
-    Model,
-    Status,
-    cross_axis_pivot,
-    solve_mechanism,
-    solve_statics,
-    strip_fields,
-)
+import fe_reference as fe
 from tests.fe.scenes import GUIDE, PARAMETERS, SIDED, TIP, WIDE, four_bar, free_cantilever, pivot, tipped
 from tests.frames import heavy
 from tests.gates import hold
@@ -39,13 +29,14 @@ def test_natural_curvature_gives_a_stress_free_arc(element: str) -> None:
 
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         runs = [
-            solve_mechanism(free_cantilever(parameters=given, elements=n, element=element)) for n in elements
+            fe.solve_mechanism(free_cantilever(parameters=given, elements=n, element=element))
+            for n in elements
         ]
         exact = radius * np.array([np.sin(angle), 1.0 - np.cos(angle)])
         return float(np.abs(extrapolated([run.shape[-1, 0, -1] for run in runs]) - exact).max() / GUIDE)
 
     hold("fe_natural_arc", error)
-    answer = solve_mechanism(free_cantilever(parameters=given, element=element))
+    answer = fe.solve_mechanism(free_cantilever(parameters=given, element=element))
     assert abs(answer.strain_energy).max() < 1e-12 * EI * curvature * angle
     assert answer.counters["settling_increments"] == 20
 
@@ -55,7 +46,9 @@ def test_roots_do_not_turn_where_there_is_no_stress(element: str) -> None:
     """On the arc of its natural curvature a strip has no moment that would turn its clamp."""
     given: dict[str, Any] = {"pre_strain": {"curvature": 3.0}}
     stiff, soft = (
-        solve_mechanism(free_cantilever(parameters=given | roots, element=element, section=WIDE)).shape[-1, 0]
+        fe.solve_mechanism(free_cantilever(parameters=given | roots, element=element, section=WIDE)).shape[
+            -1, 0
+        ]
         for roots in ({}, {"root_compliance": {"root": 3.0}})
     )
     assert np.abs(soft - stiff).max() < 1e-12 * GUIDE
@@ -65,8 +58,8 @@ def test_loads_reach_the_same_state_whatever_is_driven() -> None:
     """Where the loads turn the pivot to, a drive exerts nothing."""
     named = {"applied_force": {"force": (200.0, -300.0)}, "applied_moment": {"moment": 50.0}}
     model = pivot(effects=(*pivot().effects.names, *named), parameters=named)
-    one = solve_mechanism(model)
-    held = solve_statics(model, rotation=float(one.rotation[-1]))
+    one = fe.solve_mechanism(model)
+    held = fe.solve_statics(model, rotation=float(one.rotation[-1]))
     assert abs(held.torque[-1]) < 1e-12 * 50.0
     assert np.allclose(held.centre[-1], one.centre[-1], rtol=1e-9)
 
@@ -80,7 +73,7 @@ def test_static_balance(element: str) -> None:
     """Work of drives and loads is the change of strain and gravity energy along the whole path."""
 
     def error(increments: int = 60) -> float:
-        answer = solve_mechanism(
+        answer = fe.solve_mechanism(
             all_static(element=element, elements=8), body="crank", rotation=0.6, increments=increments
         )
         stored = answer.strain_energy + answer.spring_energy + answer.gravity_energy
@@ -93,16 +86,16 @@ def test_static_balance(element: str) -> None:
 HEAVY = {"density": 2e6, "body_mass": 0.0, "centre_offset": (0.03, 0.05)}
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> None:
     """Stiffness is the difference quotient of torques where half-elements of heavy strips hang on a body."""
     weight = scene(("bending", "stretching"), gravity={"acceleration": (0.0, -9.81)})
     model = pivot(**HEAVY, **weight, elements=2, element=element)
-    stiffness = solve_statics(model, rotation=0.5, increments=4).stiffness[-1]
+    stiffness = fe.solve_statics(model, rotation=0.5, increments=4).stiffness[-1]
 
     def error(step: float = 1e-3) -> float:
         ends = [
-            solve_statics(model, rotation=angle, increments=4).torque[-1]
+            fe.solve_statics(model, rotation=angle, increments=4).torque[-1]
             for angle in (0.5 + step, 0.5 - step)
         ]
         return abs(stiffness - (ends[0] - ends[1]) / (2.0 * step)) / MOMENT
@@ -110,7 +103,7 @@ def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> No
     hold("fe_weight_stiffness", error)
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_stiffness_does_not_depend_on_the_order(element: str) -> None:
     """Whichever strip comes first, stiffness is the same: round-off of EA is not in it, however slender."""
     thinner = {
@@ -120,7 +113,7 @@ def test_stiffness_does_not_depend_on_the_order(element: str) -> None:
     given = pivot(crossing_ratio=0.35, element=element)
     model = replace(given, strips=tuple(replace(strip, **thinner) for strip in given.strips))
     turned = replace(model, strips=model.strips[::-1])
-    one, other = (solve_statics(each, rotation=0.5, increments=4).stiffness for each in (model, turned))
+    one, other = (fe.solve_statics(each, rotation=0.5, increments=4).stiffness for each in (model, turned))
     assert one[1:] == pytest.approx(other[1:], rel=1e-12)
 
 
@@ -134,7 +127,7 @@ def deflection(elements: int) -> float:
     load = {"tip_force": {"strip": "strip", "force": (0.0, FORCE)}}
     how = {"elements": elements, "element": "reissner"}
     model = free_cantilever(length=LENGTH, section=section, parameters=load, **how)
-    return float(solve_mechanism(model, increments=1).shape[-1, 0, -1, 1])
+    return float(fe.solve_mechanism(model, increments=1).shape[-1, 0, -1, 1])
 
 
 def test_shear_of_a_stubby_cantilever_is_timoshenkos() -> None:
@@ -153,18 +146,18 @@ def test_shear_of_a_stubby_cantilever_is_timoshenkos() -> None:
     hold("fe_timoshenko_tip", error)
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
     """Two elements rolled by 1.2 turns stop where each is bent by half a turn, and tell why; four go on."""
     coarse, fine = (
         tipped(TIP, elements=n, element=element, applied_moment={"moment": 2.4 * np.pi * EI / GUIDE})
         for n in (2, 4)
     )
-    answer = solve_mechanism(coarse, increments=12, check=False, raise_on_failure=False)
-    assert answer.status is Status.NOT_CONVERGED
+    answer = fe.solve_mechanism(coarse, increments=12, check=False, raise_on_failure=False)
+    assert answer.status is fe.Status.NOT_CONVERGED
     assert "an element is folded" in answer.message
     assert 0.9 < answer.rotation[-1] / (2.0 * np.pi) <= 1.0
-    assert solve_mechanism(fine, increments=12).rotation[-1] == pytest.approx(2.4 * np.pi)
+    assert fe.solve_mechanism(fine, increments=12).rotation[-1] == pytest.approx(2.4 * np.pi)
 
 
 EVERY: dict[str, dict[str, Any]] = {**SIDED, "root_compliance": {"root": "monolithic"}}
@@ -172,17 +165,17 @@ EVERY: dict[str, dict[str, Any]] = {**SIDED, "root_compliance": {"root": "monoli
 
 def wide_pivot() -> dict[str, Any]:
     """Return a pivot of thin strips a third as wide as long, with all effects of their sides."""
-    sides = {"width": 0.03, "thickness": 5e-4, "effects": (*DEFAULT_EFFECTS, *EVERY)}
+    sides = {"width": 0.03, "thickness": 5e-4, "effects": (*fe.DEFAULT_EFFECTS, *EVERY)}
     return BARE | sides | {"parameters": {"root_compliance": EVERY["root_compliance"]}}
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_curvature_is_the_slope_of_the_rotation(element: str) -> None:
     """With all effects of the sides the curvatures at the nodes add up to the turns between them."""
 
     def error(elements: int = 320) -> float:
-        model = cross_axis_pivot(**wide_pivot(), elements=elements, element=element)
-        fields = strip_fields(model, solve_statics(model, rotation=1.0, increments=5).states[-1:])
+        model = fe.cross_axis_pivot(**wide_pivot(), elements=elements, element=element)
+        fields = fe.strip_fields(model, fe.solve_statics(model, rotation=1.0, increments=5).states[-1:])
         steps = np.diff(fields.arc_length)
         means = 0.5 * (fields.curvature[..., 1:] + fields.curvature[..., :-1])
         gaps = np.cumsum(means * steps, axis=-1) - (fields.rotation[..., 1:] - fields.rotation[..., :1])
@@ -191,11 +184,11 @@ def test_curvature_is_the_slope_of_the_rotation(element: str) -> None:
     hold("fe_curvature_of_sides", error)
 
 
-def pressed(force: float = 20e3, elements: int = 20) -> Model:
+def pressed(force: float = 20e3, elements: int = 20) -> fe.Model:
     """Return a pivot of steel strips, 300 x 50 x 3 mm at 60 deg, crossing in the middle, pressed down."""
     sides = {"length": 0.3, "inclination": np.pi / 3.0, "width": 50e-3, "thickness": 3e-3}
-    loaded = scene(DEFAULT_EFFECTS, applied_force={"force": (0.0, -force)})
-    return cross_axis_pivot(**BARE | sides | loaded, elements=elements)
+    loaded = scene(fe.DEFAULT_EFFECTS, applied_force={"force": (0.0, -force)})
+    return fe.cross_axis_pivot(**BARE | sides | loaded, elements=elements)
 
 
 #: Load at which the clamped strips of the pressed pivot buckle [N].
@@ -204,8 +197,8 @@ STRIPS_BUCKLE = 4.0 * np.pi**2 * 206e9 * 50e-3 * 3e-3**3 / 12.0 / 0.3**2 * 2.0 *
 
 def test_a_hanging_column_does_not_gain_whole_turns() -> None:
     """At twelve times Euler's load the body hangs in one place for any increments, turned by under pi."""
-    hanging = heavy(fe_reference, 30.0, elements=10)
-    places = [solve_mechanism(hanging, increments=k).bodies["tip"][-1] for k in (3, 10)]
+    hanging = heavy(fe, 30.0, elements=10)
+    places = [fe.solve_mechanism(hanging, increments=k).bodies["tip"][-1] for k in (3, 10)]
     assert np.allclose(*places, rtol=1e-8, atol=1e-12)
     assert -np.pi < places[0][2] < -0.9 * np.pi
 
@@ -216,7 +209,7 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         found = []
         for count in elements:
-            path = solve_statics(pressed(elements=count), rotation=0.0, increments=4, check=False)
+            path = fe.solve_statics(pressed(elements=count), rotation=0.0, increments=4, check=False)
             _, strips = path.critical_points
             found.append(20e3 * strips.load_factor)
         return float(abs(extrapolated(found) / STRIPS_BUCKLE - 1.0))
@@ -230,7 +223,7 @@ def test_a_tiny_imperfection_bends_a_column_as_a_small_one_does(part: float) -> 
 
     def pushed(offset: float) -> Any:
         load = {"force": (-1.2 * np.pi**2 * EI / (2.0 * GUIDE) ** 2, 0.0), "at": (GUIDE, offset * GUIDE)}
-        return solve_mechanism(tipped(TIP, applied_force=load))
+        return fe.solve_mechanism(tipped(TIP, applied_force=load))
 
     found = pushed(part)
     assert found.critical_points == () and found.message == ""
@@ -240,7 +233,7 @@ def test_a_tiny_imperfection_bends_a_column_as_a_small_one_does(part: float) -> 
 def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
     """It is placed by the eigenvalue that vanishes there, not by the increment that passes it."""
     paths = [
-        solve_statics(pressed(elements=8), rotation=0.0, increments=k, check=False).critical_points
+        fe.solve_statics(pressed(elements=8), rotation=0.0, increments=k, check=False).critical_points
         for k in (3, 4)
     ]
     assert [point.kind for point in paths[0]] == ["limit point", "bifurcation"]
@@ -249,7 +242,7 @@ def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
 
 def test_a_pressed_pivot_says_what_buckles() -> None:
     """A free pivot tips first and its strips buckle later."""
-    answer = solve_mechanism(pressed(elements=8), increments=4, check=False)
+    answer = fe.solve_mechanism(pressed(elements=8), increments=4, check=False)
     tips, strips = answer.critical_points
     assert tips.inertia == 1
     assert strips.inertia == answer.inertia[-1] > 1
@@ -261,10 +254,12 @@ def test_a_pressed_pivot_says_what_buckles() -> None:
 def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
     """Turned by a hundredth of a degree the pivot has no equilibrium beyond a load just below Euler's."""
     turned = {"rotation": np.radians(0.01), "order": "together", "increments": 4, "raise_on_failure": False}
-    answer = solve_statics(pressed(elements=8), **turned)
+    answer = fe.solve_statics(pressed(elements=8), **turned)
     assert answer.status.value == "not_converged"
     assert not answer.inertia.any()
-    straight = solve_statics(pressed(elements=8), rotation=0.0, increments=4).critical_points[1].load_factor
+    straight = (
+        fe.solve_statics(pressed(elements=8), rotation=0.0, increments=4).critical_points[1].load_factor
+    )
     (limit,) = (point for point in answer.critical_points if point.kind == "turning point")
     assert 0.99 * straight < limit.load_factor < straight
     assert limit.inertia == 1
@@ -276,12 +271,12 @@ def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
 def test_a_driven_body_without_stiffness_would_tip_over() -> None:
     """Where the stiffness of a driven turn at fixed loads vanishes is a limit point, and in words."""
     how = {"rotation": np.radians(1.0), "increments": 20, "order": "together"}
-    answer = solve_statics(pressed(force=8e3, elements=8), **how)
+    answer = fe.solve_statics(pressed(force=8e3, elements=8), **how)
     (point,) = answer.critical_points
     assert (point.kind, point.inertia) == ("limit point", 0)
 
     def error(elements: int = 8) -> float:
-        path = solve_statics(pressed(force=8e3, elements=elements), **how)
+        path = fe.solve_statics(pressed(force=8e3, elements=elements), **how)
         zero = np.interp(0.0, -path.stiffness, path.load_factor)
         return abs(point.load_factor - float(zero))
 
@@ -294,7 +289,7 @@ def test_a_driven_body_without_stiffness_would_tip_over() -> None:
 
 def test_a_stationary_torque_without_loads_is_nothing_to_warn_of() -> None:
     """The torque of Table 1 has a limit before 320 deg, and the message is empty."""
-    answer = solve_statics(pivot(elements=10), rotation=np.radians(320), increments=40)
+    answer = fe.solve_statics(pivot(elements=10), rotation=np.radians(320), increments=40)
     (point,) = answer.critical_points
     assert (point.kind, point.inertia, answer.message) == ("limit point", 0, "")
     most = int(np.abs(answer.torque).argmax())

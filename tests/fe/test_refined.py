@@ -7,15 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference import (
-    DEFAULT_EFFECTS,
-    ELEMENTS,
-    ConvergenceError,
-    StaticSolution,
-    natural_frequencies,
-    solve_mechanism,
-    solve_statics,
-)
+import fe_reference as fe
 from studies.answers.models import put
 from studies.answers.settings import FeSettings
 from studies.commands.arguments import read_design
@@ -30,11 +22,11 @@ def apart(found: Any, exact: Any, name: str) -> float:
     return float(np.abs(one - two).max() / np.abs(two).max())
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_the_limit_of_a_path_is_within_its_estimate(element: str) -> None:
     """Torque, stiffness, energy and largest stress err by less than estimated, which is what was asked."""
     coarse, exact = (
-        solve_statics(pivot(elements=4, element=element), rotation=1.0, increments=5, accuracy=accuracy)
+        fe.solve_statics(pivot(elements=4, element=element), rotation=1.0, increments=5, accuracy=accuracy)
         for accuracy in (1e-3, 1e-7)
     )
     assert coarse.estimate is not None and exact.estimate is not None
@@ -50,7 +42,7 @@ def test_the_limit_of_a_path_is_within_its_estimate(element: str) -> None:
 def test_the_limit_of_a_mechanism_under_loads() -> None:
     """A four-bar of curved strips under all its loads and drives has one limit from either mesh."""
     limits = [
-        solve_mechanism(model, body="crank", rotation=0.1, increments=4, accuracy=1e-5)
+        fe.solve_mechanism(model, body="crank", rotation=0.1, increments=4, accuracy=1e-5)
         for model in (four_bar(elements=n, rise=0.002) for n in (6, 8))
     ]
     assert apart(*limits, "torque") < sum(each.estimate.errors["torque"] for each in limits)
@@ -59,27 +51,27 @@ def test_the_limit_of_a_mechanism_under_loads() -> None:
 def test_frequencies_have_a_limit() -> None:
     """The first frequencies about a bent state err by less than estimated."""
     coarse, exact = (
-        natural_frequencies(pivot(elements=6), rotation=0.5, count=3, accuracy=accuracy)
+        fe.natural_frequencies(pivot(elements=6), rotation=0.5, count=3, accuracy=accuracy)
         for accuracy in (1e-3, 1e-7)
     )
     assert coarse.estimate is not None
     errors = np.abs(coarse.frequency / exact.frequency - 1.0)
     assert np.all(errors < list(coarse.estimate.errors.values()))
-    with pytest.raises(ConvergenceError, match=r"accuracy 1e-14 is not reached with up to \d+ elements"):
-        natural_frequencies(pivot(elements=6), rotation=0.5, count=3, accuracy=1e-14)
+    with pytest.raises(fe.ConvergenceError, match=r"accuracy 1e-14 is not reached with up to \d+ elements"):
+        fe.natural_frequencies(pivot(elements=6), rotation=0.5, count=3, accuracy=1e-14)
 
 
 def test_an_accuracy_out_of_reach_is_told() -> None:
     """What round-off does not let reach is the best answer with its estimate, and not converged."""
     asked = {"rotation": 0.5, "increments": 2, "accuracy": 1e-13}
-    best = solve_statics(pivot(elements=4), raise_on_failure=False, **asked)
+    best = fe.solve_statics(pivot(elements=4), raise_on_failure=False, **asked)
     assert best.status.value == "not_converged"
     assert "ask for no less" in best.message
     assert best.estimate is not None and best.estimate.largest > best.estimate.accuracy
-    with pytest.raises(ConvergenceError, match="is not reached"):
-        solve_statics(pivot(elements=4), **asked)
-    pressed = pivot(elements=2, **scene(DEFAULT_EFFECTS, applied_force={"force": (0.0, -1e6)}))
-    stopped = solve_mechanism(pressed, accuracy=1e-3, raise_on_failure=False)
+    with pytest.raises(fe.ConvergenceError, match="is not reached"):
+        fe.solve_statics(pivot(elements=4), **asked)
+    pressed = pivot(elements=2, **scene(fe.DEFAULT_EFFECTS, applied_force={"force": (0.0, -1e6)}))
+    stopped = fe.solve_mechanism(pressed, accuracy=1e-3, raise_on_failure=False)
     assert stopped.status.value == "not_converged" and stopped.estimate is None
 
 
@@ -104,8 +96,8 @@ QUANTITIES = {
 
 
 @cache
-def path(element: str, elements: int) -> StaticSolution:
-    return solve_statics(pivot(element=element, elements=elements), rotation=np.pi / 2.0, increments=10)
+def path(element: str, elements: int) -> fe.StaticSolution:
+    return fe.solve_statics(pivot(element=element, elements=elements), rotation=np.pi / 2.0, increments=10)
 
 
 def deviation(value: np.ndarray, exact: np.ndarray) -> float:
@@ -117,7 +109,7 @@ def deviation(value: np.ndarray, exact: np.ndarray) -> float:
     return float((np.linalg.norm(gap, axis=1) if gap.ndim > 1 else np.abs(gap)).max() / size)
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_level_of_twenty_elements(element: str, quantity: str) -> None:
     """Twenty elements are as near to the extrapolated value as stated."""
