@@ -40,10 +40,7 @@ PIVOTS: list[tuple[dict[str, Any], str]] = [
     (more(body_damping={"rotation": -1.0}), "rotation: got -1.0, expected a number not below 0 [N m s]"),
     (more(applied_force={"force": PULL, "body": "car"}), "body: got 'car', expected one of body [name]"),
     (more(applied_moment={"moment": 1.0, "body": "car"}), "body: got 'car', expected one of body [name]"),
-    (
-        more(applied_moment={"moment": 1.0, "history": TWICE}),
-        "history: got ... expected pairs of ascending instants [s]",
-    ),
+    (more(applied_moment={"moment": 1.0, "history": TWICE}), "history: got ... expected pairs of ascending"),
     (more(tip_force={"strip": "strip_1", "force": PULL}), "tip_force: got 'strip_1', expected a strip whose"),
     (more(tip_force={"strip": "rope", "force": PULL}), "strip: got 'rope', expected one of strip_1, strip_2"),
 ]
@@ -109,20 +106,11 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: guide({"clamped_width": {}}), f"clamped_width: got 'left', {NEEDED}"),
     (lambda: guide({"anticlastic": {}}), f"anticlastic: got 'left', {NEEDED}"),
     (lambda: guide({"root_compliance": {"root": 1.0}}), f"root_compliance: got 'left', {NEEDED}"),
-    (
-        lambda: alone(clamped_width={}),
-        "clamped_width: got 'strip', expected strips clamped at both ends [name]",
-    ),
+    (lambda: alone(clamped_width={}), "clamped_width: got 'strip', expected strips clamped at both ends"),
     (lambda: four_bar({"anticlastic": {}}, rise=0.003, section=WIDE), "got 'a', expected straight strips"),
-    (
-        lambda: sided(anticlastic={}, pre_strain=BENT),
-        "anticlastic: got 'natural curvature', expected strips that",
-    ),
+    (lambda: sided(anticlastic={}, pre_strain=BENT), "anticlastic: got 'natural curvature', expected"),
     (lambda: sided(root_compliance={"root": -1.0}), "root: got -1.0, expected a number not below 0"),
-    (
-        lambda: fe.solve_mechanism(sided(VAST, clamped_width={})),
-        "clamped_width: got 100.0, expected a width over length up to",
-    ),
+    (lambda: fe.solve_mechanism(sided(VAST, clamped_width={})), "clamped_width: got 100.0, expected a"),
     *(
         (partial(fe.plate_factors, *each), "ratio")
         for each in ((0.0, 0.3), (np.nan, 0.3), (0.5, -0.1), (0.5, 0.6))
@@ -137,10 +125,7 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: fe.Model(strips=()), "one or more strips"),
     (lambda: fe.solve_mechanism(unheld()), "nothing holds body tip against turning"),
     (lambda: fe.solve_mechanism(four_bar(), rotation=0.1), "body: got None, expected one of crank, cou"),
-    (
-        lambda: fe.solve_mechanism(free_cantilever(), rotation=0.1),
-        "body: got None, expected one of no bodies",
-    ),
+    (lambda: fe.solve_mechanism(free_cantilever(), rotation=0.1), "body: got None, expected one of no"),
     (lambda: alone(driven_displacement=LED), "driven_displacement: got 'no bodies'"),
     (lambda: fe.solve_motion(guide(), start=0.1, settled=False, **BRIEF), "settled: got False"),
     (lambda: fe.natural_frequencies(guide(), rotation=None, held=True), "held: got True, expected a driven"),
@@ -148,10 +133,7 @@ ASKED: list[tuple[Callable[[], object], str]] = [
         lambda: fe.solve_motion(free_cantilever(root=None), settled=False, integrator=ALPHA, **BRIEF),
         "step: got None",
     ),
-    (
-        lambda: fe.solve_mechanism(apart(1e14), body="b", rotation=0.1),
-        "expected clamps that hold it, or stiffnesses less far apart",
-    ),
+    (lambda: fe.solve_mechanism(apart(1e14), body="b", rotation=0.1), "expected clamps that hold it, or"),
     (lambda: fe.natural_frequencies(pivot(**STILL)), INERTIA),
     (lambda: release(STILL), INERTIA),
     (lambda: release(LIGHT), "expected generalised-alpha where strips or bodies have no"),

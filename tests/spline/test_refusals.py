@@ -102,10 +102,7 @@ SIDED = [
     (partial(clamped, **given), said)
     for given, said in (
         ({"tip": None}, "tip of strip_0: got None, expected ground or a body for clamped_width"),
-        (
-            {"tip": None, "tip_joint": "hinge"},
-            "tip_joint of strip_0: got 'hinge', expected clamp of a free end",
-        ),
+        ({"tip": None, "tip_joint": "hinge"}, "tip_joint of strip_0: got 'hinge', expected clamp of a free"),
         ({"rise": math.nan}, "rise of strip_0: got nan, expected a finite number [m]"),
         ({"rise": 0.1}, "rise of strip_0: got 0.1, expected 0, a straight strip, for clamped_width"),
         ({"width": 5.0}, "width over length of strip_0: got 5.0, expected 0.005 to 4"),
@@ -183,10 +180,7 @@ ASKED = [
     (lambda: sensitivities(followed(), solve_statics(followed(), rotation=0.1)), f"asked: {LIKE}"),
     (lambda: natural_frequencies(followed()), f"effects: {LIKE}"),
     (lambda: solve_motion(followed(), integrator="leapfrog"), "expected energy (the default) for damping"),
-    (
-        lambda: solve_statics(pivot(**MOMENT), **TO_AND_FRO),
-        "rotation: got [-0.1, 0.2], expected turns to one",
-    ),
+    (lambda: solve_statics(pivot(**MOMENT), **TO_AND_FRO), "rotation: got [-0.1, 0.2], expected turns"),
     (lambda: many(order="first"), "one of loads first, together"),
     (lambda: solve_many([TABLE_ONE, SIX | {"length": -1.0}], rotation=1.0), "design 1: length: got -1.0"),
     (lambda: solve_many([TABLE_ONE] * 3, rotation=[1.0, 0.5]), "rotation"),
@@ -201,10 +195,7 @@ ASKED = [
         "width over length of strip_1",
     ),
     (lambda: derived(given=TAPERED), "taper of strip_1: got (1.0, 2.0), expected none, a constant section"),
-    (
-        lambda: solve_many(cross_axis_pivot(**BARE | TAPERED), rotation=0.1),
-        "taper of strip_1: got (1.0, 2.0)",
-    ),
+    (lambda: solve_many(cross_axis_pivot(**BARE | TAPERED), rotation=0.1), "taper of strip_1: got (1.0,"),
     (lambda: solve_statics(pivot(), rotation=1e-13), "rotation: got 1e-13, expected 0, or legs of 1e-12"),
     (lambda: accurate(axial_modes=3), "axial_modes: got 3, expected none beside accuracy"),
     # which of both is up to round-off: a drive against inextensible strips that cannot give way

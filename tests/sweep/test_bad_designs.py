@@ -40,16 +40,10 @@ BAD = [
     ({"vary": "vary.foo = [1]"}, " names, which docs/cases.md lists"),
     ({"vary": "vary.strip.crossing_ratio = 0.5"}, "vary.strip.crossing_ratio: got 0.5, expected a list or"),
     ({"vary": "vary.strip.crossing_ratio = { from = 0.5, to = 0.5 }"}, "got an empty range from 0.5 to 0.5"),
-    (
-        {"vary": "vary.strip.crossing_ratio = { from = 0.5 }"},
-        "to: got no such key, expected a number between",
-    ),
+    ({"vary": "vary.strip.crossing_ratio = { from = 0.5 }"}, "to: got no such key, expected a number"),
     ({"vary": 'vary.body.centre_offset_m.x = { from = 0, to = 1, scale = "log" }'}, "expected it above 0"),
     ({"vary": "vary.strip.crossing_ratio = []"}, "got [], expected a list of values"),
-    (
-        {"vary": "vary.strip.crossing_ratio = { values = [0.5] }"},
-        "crossing_ratio.values: got no key of the case",
-    ),
+    ({"vary": "vary.strip.crossing_ratio = { values = [0.5] }"}, "crossing_ratio.values: got no key of"),
     (
         {"vary": 'vary.effects.driven_displacement.displacement_m = [["free", 0.1], [0.1, 0.1]]'},
         "got values of different types, expected numbers, texts or pairs of numbers alone",
