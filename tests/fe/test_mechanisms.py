@@ -54,16 +54,6 @@ def test_roots_do_not_turn_where_there_is_no_stress(element: str) -> None:
     assert np.abs(soft - stiff).max() < 1e-12 * GUIDE
 
 
-def test_loads_reach_the_same_state_whatever_is_driven() -> None:
-    """Where the loads turn the pivot to, a drive exerts nothing."""
-    named = {"applied_force": {"force": (200.0, -300.0)}, "applied_moment": {"moment": 50.0}}
-    model = pivot(effects=(*pivot().effects.names, *named), parameters=named)
-    one = fe.solve_mechanism(model)
-    held = fe.solve_statics(model, rotation=float(one.rotation[-1]))
-    assert abs(held.torque[-1]) < 1e-12 * 50.0
-    assert np.allclose(held.centre[-1], one.centre[-1], rtol=1e-9)
-
-
 def all_static(**discretisation: Any) -> Any:
     return four_bar(STATIC, rise=0.002, **discretisation)
 

@@ -1,8 +1,5 @@
 """The largest stress of an answer and from where on it yields; what an answer warns of."""
 
-import csv
-import io
-import json
 import math
 from dataclasses import replace
 from functools import cache
@@ -87,18 +84,6 @@ def test_stress_of_a_strip_bent_by_a_moment(settings, command):
     (strip,) = design.strips
     modulus = math.sqrt(strip.area * strip.second_moment_of_area / 3.0)
     assert answer.max_stress[-1] == pytest.approx(0.1 / modulus, rel=1e-5)
-
-
-def test_csv_is_a_row_a_state(case, command, tmp_path):
-    """Requirement: --csv writes what the JSON has by state, in order, with units in the column names."""
-    words = ["solve", case(), "--model", "fe", "--increments", 2]
-    outcome = command(*words, "--csv", tmp_path / "path.csv")
-    assert outcome.out.endswith(f"{tmp_path / 'path.csv'}: the answer as CSV\n")
-    rows = list(csv.DictReader(io.StringIO((tmp_path / "path.csv").read_text(encoding="utf-8"))))
-    assert [row["model"] for row in rows] == ["fe"] * 3
-    answer = json.loads(command(*words, "--json", "-").out)
-    for name in set(rows[0]) - {"model"}:
-        assert [float(row[name]) for row in rows] == pytest.approx(answer[name], rel=1e-9, abs=1e-6)
 
 
 def doubts(design):
