@@ -11,7 +11,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from tests import gates
 from tests.agreement import loaded
-from tests.agreement.loaded import LOADS, ROTATION, angle, differences, elements, extrapolated, spline
+from tests.agreement.loaded import LOADS, ROTATION, angle, apart, design
 
 HELD = (ROTATION, -ROTATION, 0.0)
 EFFECTS = pytest.mark.parametrize("effect", LOADS)
@@ -23,17 +23,11 @@ STIFF = "driven_displacement"
 QUANTITIES = ("torque", "stiffness", "path", "moments", "axial", "energy")
 
 
-def apart(effect, rotation, control_points=10):
-    """Differences of the spline from the limit of the elements, by quantity; NaN where nothing is driven."""
-    limit = extrapolated(elements(effect, rotation, 10), elements(effect, rotation, 20))
-    return differences(spline(effect, rotation, control_points), limit)
-
-
 @EFFECTS
 @pytest.mark.parametrize("rotation", [*HELD, None], ids=angle)
 def test_loaded_statics_agree(effect, rotation):
     """Requirement: torque, stiffness, path, clamp moments, axial forces and energy agree under every load."""
-    found = apart(effect, rotation)
+    found = apart(design(effect, rotation))
     for name in QUANTITIES:
         if rotation is None and name in ("torque", "stiffness"):
             assert np.isnan(found[name])
@@ -47,15 +41,17 @@ def test_loaded_statics_agree(effect, rotation):
 def test_fewer_control_points_are_apart(gate, effect):
     """Requirement: fewer control points do not pass."""
     names = QUANTITIES if effect == STIFF else [gate.removeprefix("loads_")]
-    gates.refuse(gate, lambda **grid: max(apart(effect, ROTATION, **grid)[name] for name in names))
+    gates.refuse(gate, lambda **grid: max(apart(design(effect), **grid)[name] for name in names))
 
 
 def quotient(effect, rotation, settings, by=3e-4):
     """Difference of the stiffness from that of torques of two paths of their own, over EI/L."""
-    asked = loaded.design(effect, rotation)
-    torques = [loaded.state(replace(asked, rotation=rotation + turn), settings).torque for turn in (by, -by)]
+    asked = design(effect, rotation)
+    torques = [
+        loaded.state(replace(asked, rotation=rotation + turn), settings)["torque"] for turn in (by, -by)
+    ]
     slope = (torques[0] - torques[1]) / (2.0 * by)
-    return abs(loaded.state(asked, settings).stiffness - slope) / loaded.MOMENT_UNIT
+    return abs(loaded.state(asked, settings)["stiffness"] - slope) / loaded.MOMENT_UNIT
 
 
 @MODELS
@@ -92,7 +88,7 @@ def modes_apart(asked: Design, control_points: int = 8, meshes: tuple[int, int] 
 def test_modes_about_loaded_states_agree(effect, rotation):
     """Requirement: the first three modes about a released state agree under every load."""
     gate, meshes = ("loads_modes_led", (10, 20)) if effect == STIFF else ("loads_modes", (5, 10))
-    error = partial(modes_apart, loaded.design(effect, rotation), meshes=meshes)
+    error = partial(modes_apart, design(effect, rotation), meshes=meshes)
     gates.check(gate, error())
     if effect in ("applied_force", STIFF) and rotation == -ROTATION:
         gates.refuse(gate, error)

@@ -301,20 +301,3 @@ def test_a_byte_order_mark_is_no_fault(tmp_path, command):
     path = tmp_path / "rod.toml"
     path.write_text(rod(), encoding="utf-8-sig")
     assert command("solve", path).code == 0
-
-
-@pytest.fixture
-def pulled_strip(tmp_path):
-    """Path of a case of one strip with a small force at its free tip."""
-    path = tmp_path / "strip.toml"
-    path.write_text(one_strip(ROD.replace(f"{-LOAD}", "-0.5")), encoding="utf-8")
-    return path
-
-
-@pytest.mark.parametrize("model", ["fe", "fe-shear"])
-def test_modes_of_strips_alone(model, pulled_strip, command):
-    """The table has the frequencies of a strip; no body moves in its modes."""
-    ended = command("modes", pulled_strip, "--model", model, "--elements", 4, "--count", 2)
-    assert ended.code == 0
-    first = next(line.split() for line in ended.out.splitlines() if line.split()[0] == "1")
-    assert [float(value) for value in first[2:]] == [0.0, 0.0, 0.0]
