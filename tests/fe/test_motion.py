@@ -1,5 +1,7 @@
 """Motion and modes: closed forms, balance of energies, drives, masses, steps that are too long."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -42,14 +44,8 @@ def test_run_is_described() -> None:
 
 def test_implicit_step_without_solution_ends_the_run() -> None:
     """A step that no halving makes solvable ends the run with the motion until then."""
-    motion = fe.solve_release(
-        pivot(),
-        start=QUARTER,
-        duration=10.0,
-        step=1.0,
-        integrator="generalised-alpha",
-        raise_on_failure=False,
-    )
+    how: dict[str, Any] = {"integrator": "generalised-alpha", "raise_on_failure": False}
+    motion = fe.solve_release(pivot(), start=QUARTER, duration=10.0, step=1.0, **how)
     assert motion.status is not fe.Status.CONVERGED
     assert motion.message != ""
     assert len(motion.time) >= 1
@@ -242,24 +238,17 @@ def relative(value: np.ndarray, exact: np.ndarray) -> float:
 def test_both_masses_extrapolate_to_the_same_frequencies(element: str) -> None:
     """At rest and at 60 degrees the frequencies do not depend on how the mass is put on the mesh."""
 
+    def limit(rotation: float, mass: str, elements: tuple[int, ...]) -> Any:
+        how: dict[str, Any] = {"rotation": rotation, "count": 5, "mass": mass, "increments": 5}
+        meshes = [pivot(elements=n, element=element) for n in elements]
+        return extrapolated([fe.natural_frequencies(mesh, **how).frequency for mesh in meshes])
+
     def error(elements: tuple[int, ...] = (20, 40, 80)) -> float:
-        worst = 0.0
-        for rotation in (0.0, np.pi / 3.0):
-            limits = []
-            for mass in ("consistent", "lumped"):
-                values = [
-                    fe.natural_frequencies(
-                        pivot(elements=n, element=element),
-                        rotation=rotation,
-                        count=5,
-                        mass=mass,
-                        increments=5,
-                    ).frequency
-                    for n in elements
-                ]
-                limits.append(extrapolated(values))
-            worst = max(worst, relative(*limits))
-        return worst
+        pairs = [
+            [limit(rotation, mass, elements) for mass in ("consistent", "lumped")]
+            for rotation in (0.0, np.pi / 3.0)
+        ]
+        return max(relative(*pair) for pair in pairs)
 
     hold(f"fe_frequencies_by_mass_{element}", error)
 
@@ -319,17 +308,11 @@ def test_section_rotary_inertia() -> None:
     exact = rayleigh_frequency()
 
     def error(effects: tuple[str, ...] = ("section_rotary_inertia",)) -> float:
-        worst = 0.0
+        names, worst = (*fe.DEFAULT_EFFECTS, *effects), 0.0
+        meshes = [free_cantilever(section=STOUT, elements=n, effects=names) for n in (20, 40, 80)]
         for mass in ("consistent", "lumped"):
-            seen = [
-                fe.natural_frequencies(
-                    free_cantilever(section=STOUT, elements=n, effects=(*fe.DEFAULT_EFFECTS, *effects)),
-                    rotation=None,
-                    count=2,
-                    mass=mass,
-                ).frequency[1]
-                for n in (20, 40, 80)
-            ]
+            how: dict[str, Any] = {"rotation": None, "count": 2, "mass": mass}
+            seen = [fe.natural_frequencies(mesh, **how).frequency[1] for mesh in meshes]
             worst = max(worst, abs(float(extrapolated(seen)) / exact - 1.0))
         return float(worst)
 
