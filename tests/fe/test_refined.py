@@ -11,7 +11,7 @@ import fe_reference as fe
 from studies.answers.models import put
 from studies.answers.settings import FeSettings
 from studies.commands.arguments import read_design
-from tests.fe.scenes import four_bar, pivot
+from tests.fe.scenes import pivot
 from tests.gates import hold
 from tests.models import extrapolated, scene
 
@@ -37,15 +37,6 @@ def test_the_limit_of_a_path_is_within_its_estimate(element: str) -> None:
     assert coarse.shape.shape == exact.shape.shape == (6, 2, 5, 2)
     assert apart(coarse, exact, "bending_moment") < coarse.estimate.largest
     assert coarse.stations == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0], rel=1e-14)
-
-
-def test_the_limit_of_a_mechanism_under_loads() -> None:
-    """A four-bar of curved strips under all its loads and drives has one limit from either mesh."""
-    limits = [
-        fe.solve_mechanism(model, body="crank", rotation=0.1, increments=4, accuracy=1e-5)
-        for model in (four_bar(elements=n, rise=0.002) for n in (6, 8))
-    ]
-    assert apart(*limits, "torque") < sum(each.estimate.errors["torque"] for each in limits)
 
 
 def test_frequencies_have_a_limit() -> None:

@@ -11,6 +11,7 @@ import spline_model
 from spline_model import Status, cross_axis_pivot, solve_many, solve_mechanism, solve_release, solve_statics
 from tests import gates
 from tests.frames import one_strip
+from tests.models import scene
 from tests.spline import scenes
 from tests.table_one import TABLE_ONE
 
@@ -217,7 +218,6 @@ def test_what_a_path_lacks_has_no_error():
 
 #: Half a swing [s].
 DURATION = 0.006
-HEAVY = ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")
 
 
 def swung(n=6, **settings):
@@ -277,24 +277,21 @@ def test_records_are_thinned_not_the_comparison():
     assert np.array_equal(few.rotation, many.rotation[::32])
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {"stretch": "inextensible"},
-        {"effects": ("bending", "stretching", "body_inertia")},
-        {"effects": HEAVY},
-        {
-            "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "strip_damping"),
-            "parameters": {"strip_damping": {"relaxation_time": 1e-6}},
-        },
-    ],
-    ids=["inextensible", "massless strips", "gravity", "damping"],
-)
-def test_other_motions_have_an_estimate_too(settings):
+#: Scenes without explicit steps, with weight or with losses.
+OTHERS = {
+    "inextensible": {"stretch": "inextensible"},
+    "massless strips": {"effects": ("bending", "stretching", "body_inertia")},
+    "gravity": {"effects": (*spline_model.DEFAULT_EFFECTS, "gravity")},
+    "damping": scene(spline_model.DEFAULT_EFFECTS, strip_damping={"relaxation_time": 1e-6}),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_motions_have_an_estimate_too(name):
     """Requirement: scenes without explicit steps, with weight or with losses are solved to an accuracy."""
-    trajectory = swung(accuracy=3e-2, duration=0.003, **settings)
+    trajectory = swung(accuracy=3e-2, duration=0.003, **OTHERS[name])
     assert trajectory.status is Status.CONVERGED
-    finer = swung(8, duration=0.003, step=1.25e-5, **settings)
+    finer = swung(8, duration=0.003, step=1.25e-5, **OTHERS[name])
     gates.check("spline_motion_accuracy_request", true_error(trajectory, finer) / 3e-2)
 
 

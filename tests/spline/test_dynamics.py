@@ -81,17 +81,6 @@ def swing(step, duration=0.004, integrator="leapfrog", **more):
     return released(more, start=QUARTER, records=100, check=False, **how)
 
 
-@cache
-def reference():
-    """Rotation by short energy-consistent steps, 4 ms."""
-    return swing(1e-7, integrator="energy").rotation
-
-
-def test_leapfrog_agrees_with_the_energy_consistent_scheme():
-    """Requirement: both schemes, which share no time step, tend to one trajectory."""
-    gates.hold("spline_leapfrog_agrees", lambda step=1e-6: np.abs(swing(step).rotation - reference()).max())
-
-
 def test_default_step_is_stable_and_a_long_one_says_so():
     """Requirement: the step from the highest frequency works; a step above the limit ends with a reason."""
     run = spline_model.solve_release(pivot(), duration=0.002, integrator="leapfrog")
@@ -105,22 +94,28 @@ def test_default_step_is_stable_and_a_long_one_says_so():
 ROOTS = {"root_compliance": {"root": "monolithic"}}
 
 
-@pytest.mark.parametrize(
-    "more",
-    [
-        {"stretch": "consistent"},
-        {"stretch": "inextensible"},
-        {"segments": 2, "control_points": 5},
-        {"effects": ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")},
-        {"effects": (*spline_model.DEFAULT_EFFECTS, "root_compliance"), "parameters": ROOTS, **SIDES},
-    ],
-    ids=["consistent", "inextensible", "segments", "gravity", "roots"],
-)
-def test_all_free_scenes_move(more):
-    """Requirement: both schemes tend to one trajectory in every basis and axial form."""
-    steps = {"leapfrog": 1e-6, "energy": 2.5e-7}
-    pair = [swing(step, 2e-4, name, **more).rotation for name, step in steps.items()]
-    gates.check("spline_leapfrog_agrees", np.abs(pair[0] - pair[1]).max())
+FREE = {
+    "mixed": {},
+    "consistent": {"stretch": "consistent"},
+    "inextensible": {"stretch": "inextensible"},
+    "segments": {"segments": 2, "control_points": 5},
+    "gravity": {"effects": (*spline_model.DEFAULT_EFFECTS, "gravity")},
+    "roots": {"effects": (*spline_model.DEFAULT_EFFECTS, "root_compliance"), "parameters": ROOTS, **SIDES},
+}
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_leapfrog_agrees_with_the_energy_consistent_scheme(name):
+    """Requirement: both schemes, which share no time step, tend to one trajectory in every scene and form."""
+    duration, fine = (2e-4, 2.5e-7) if FREE[name] else (4e-3, 1e-7)
+    right = swing(fine, duration, "energy", **FREE[name]).rotation
+
+    def error(step=1e-6):
+        return np.abs(swing(step, duration, **FREE[name]).rotation - right).max()
+
+    gates.check("spline_leapfrog_agrees", error())
+    if name == "mixed":
+        gates.refuse("spline_leapfrog_agrees", error)
 
 
 def energy_of_inextensible(step=5e-6):

@@ -158,16 +158,7 @@ def test_forms_keep_angular_momentum():
 
 
 DAMPED = {
-    "effects": (
-        "bending",
-        "stretching",
-        "strip_inertia",
-        "body_inertia",
-        "strip_damping",
-        "strip_drag",
-        "body_damping",
-        "gravity",
-    ),
+    "effects": (*spline_model.DEFAULT_EFFECTS, "strip_damping", "strip_drag", "body_damping", "gravity"),
     "parameters": {
         "strip_damping": {"relaxation_time": 2e-6},
         "strip_drag": {"rate": 20.0},
@@ -194,7 +185,7 @@ def test_damping_is_booked(form):
 
 def test_a_pivot_at_rest_under_its_weight_stays():
     """Requirement: equilibrium under weight is kept, without motion or energy, in ten thousand steps."""
-    chosen = pivot(POLYMER, effects=("bending", "stretching", "strip_inertia", "body_inertia", "gravity"))
+    chosen = pivot(POLYMER, effects=(*spline_model.DEFAULT_EFFECTS, "gravity"))
     run = spline_model.solve_impulses(chosen, duration=100.0, records=100)
     assert np.abs(run.centre - run.centre[0]).max() < 1e-9
     assert run.kinetic_energy.max() < 1e-15 * run.strain_energy[0]
@@ -202,7 +193,7 @@ def test_a_pivot_at_rest_under_its_weight_stays():
 
 def test_supports_hold_and_loads_work():
     """Requirement: a body on a support under a constant load swings as by the other integrator."""
-    effects = ("bending", "stretching", "strip_inertia", "body_inertia", "support", "applied_moment")
+    effects = (*spline_model.DEFAULT_EFFECTS, "support", "applied_moment")
     given = {"support": {"fixed": ("y",)}, "applied_moment": {"moment": 0.02}}
     chosen, options = pivot(effects=effects, parameters=given), {"start": 0.05, "duration": 2e-3}
     exact = spline_model.solve_motion(chosen, step=2e-6, records=20, check=False, **options)

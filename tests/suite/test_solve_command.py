@@ -17,15 +17,6 @@ def test_printed_forces_leave_the_stiffness_of_the_body_out(case, command):
     assert "stiffness of the body: none with printed forces" in command(*words).out
 
 
-def test_settings_of_the_answer_are_those_asked_for(case, command):
-    """Every option of the spline reaches the model and stands in the answer."""
-    asked = {"control_points": 8, "segments": 2, "measure": "material", "stretch": "mixed"}
-    options = [word for name, value in asked.items() for word in (f"--{name.replace('_', '-')}", value)]
-    path = ["--rotation-deg", 5, "--increments", 1]
-    answer = json.loads(command("solve", case(), "--model", "spline", *options, *path, "--json", "-").out)
-    assert asked.items() <= answer["settings"].items()
-
-
 def test_stiffness_over_that_of_the_rotation(command):
     """At rest a straight strip has A L^2 / I along and 12 across, over EI/L of the turn of its end."""
     words = ["solve", "cantilever_with_body", "--effects=bending,stretching", "--increments", 1]
