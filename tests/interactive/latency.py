@@ -20,34 +20,14 @@ from studies.interactive.web import protocol
 from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
 from tests.interactive.films import PERIOD, film
-from tests.interactive.pages import load
+from tests.interactive.pages import load, script
 from tests.interactive.sockets import answer, opened
 
 #: Parts of the way through the server that it times itself; the rest is the sending's, the loopback's, the
 #: threads' and this client's.
 PARTS = ("track", "solve")
 #: Keeps in the page the milliseconds from each picture's capture until it is drawn with its state.
-WATCH = """
-window.ways = [];
-const captured = new Map();
-window.WebSocket = class extends WebSocket {
-  send(data) {
-    if (data instanceof Uint8Array) {
-      const head = new DataView(data.buffer);
-      captured.set(head.getUint32(4, true), head.getFloat64(12, true));
-    }
-    super.send(data);
-  }
-};
-let last = null;
-const watch = () => {
-  const seq = window.studio?.drawn?.seq;
-  if (seq !== last && captured.has(seq)) window.ways.push(performance.now() - captured.get(seq));
-  last = seq;
-  requestAnimationFrame(watch);
-};
-watch();
-"""
+WATCH = script("ways")
 
 
 def measured(count):

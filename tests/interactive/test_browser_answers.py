@@ -41,7 +41,6 @@ def test_release_is_that_of_the_command(page):
     at = np.array([0.0, *time])
     stored = known.strain_energy + known.kinetic_energy
     frequency = swing_frequency(at, np.array([START, *rotation])).value
-    print(frequency, known.swing, np.abs(energy - np.interp(time, known.time, stored)).max() / stored[0])
     assert frequency == pytest.approx(known.swing.value, rel=2e-3)
     assert np.abs(energy - np.interp(time, known.time, stored)).max() <= 0.02 * stored[0]
 

@@ -10,7 +10,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from tests.interactive.pages import COUNT_SOCKETS, load, reloaded
+from tests.interactive.pages import COUNT_SOCKETS, load, reloaded, script
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
 
@@ -74,13 +74,7 @@ def test_pivot_and_sliders_are_seen_together(width, height):
 
 
 #: Smaller sides [px] of what a finger is to hit, by what it is.
-TARGETS = """
-const all = [...document.querySelectorAll("button, select, input:not([type=file])")];
-all.filter((e) => e.offsetParent).map((e) => {
-  const { width, height } = e.getBoundingClientRect();
-  return [e.type, e.id || e.ariaLabel, Math.min(width, height), width];
-})
-"""
+TARGETS = script("targets")
 
 
 def test_fingers_hit_what_they_should():
