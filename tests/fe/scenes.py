@@ -1,4 +1,4 @@
-"""What the tests of the elements share: the pivot, a cantilever, a parallel-strip guide, a four-bar."""
+"""What the tests of the elements share: the pivot, a cantilever, a four-bar."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,7 +8,7 @@ from tests.models import scene
 from tests.table_one import SECTION, TABLE_ONE
 
 Parameters = Mapping[str, Any]
-#: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
+#: Length of the cantilever [m], width of the four-bar, and length of its links.
 GUIDE, APART, LINK = 0.1, 0.05, 0.06
 #: Effects of bodies on strips without inertia.
 MASSLESS = ("bending", "stretching", "body_inertia")
@@ -68,19 +68,6 @@ def tipped(
     effects = scene(fe.DEFAULT_EFFECTS, **given)
     strips = [fe.StripDesign(name="strip", **along)]
     return fe.compliant_mechanism(strips=strips, bodies=bodies, elements=elements, element=element, **effects)
-
-
-def guide(
-    parameters: Parameters | None = None, *, section: Mapping[str, float] = SECTION, **discretisation: Any
-) -> fe.Model:
-    """Return a stage on two parallel strips."""
-    strips = [
-        fe.StripDesign(name=name, start=(x, 0.0), end=(x, GUIDE), tip="stage", **section)
-        for name, x in (("left", 0.0), ("right", APART))
-    ]
-    stage = fe.BodyDesign(name="stage", centre=(0.5 * APART, GUIDE), mass=0.2, moment_of_inertia=1e-4)
-    given = scene(fe.DEFAULT_EFFECTS, **parameters or {})
-    return fe.compliant_mechanism(strips=strips, bodies=[stage], **given, **discretisation)
 
 
 def four_bar(

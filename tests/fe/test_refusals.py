@@ -9,7 +9,7 @@ import pytest
 
 import fe_reference as fe
 from tests import table_one
-from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, guide, pivot, tipped
+from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, pivot, tipped
 from tests.fe.test_solid import strip as solid
 from tests.models import refused, scene
 from tests.table_one import BARE, SIDES
@@ -45,11 +45,6 @@ PIVOTS: list[tuple[dict[str, Any], str]] = [
     (more(tip_force={"strip": "strip_1", "force": PULL}), "tip_force: got 'strip_1', expected a strip whose"),
     (more(tip_force={"strip": "rope", "force": PULL}), "strip: got 'rope', expected one of strip_1, strip_2"),
 ]
-
-
-def sided(strips: dict[str, Any] = WIDE, **parameters: Any) -> fe.Model:
-    """Return the guide of strips that have sides, with effects of them."""
-    return guide(parameters, section=strips)
 
 
 def alone(**parameters: Any) -> fe.Model:
@@ -95,7 +90,8 @@ def unheld() -> fe.Model:
 ALPHA = "generalised-alpha"
 INERTIA = "expected strip_inertia or body_inertia for a motion"
 NEEDED = "expected strips with width and thickness"
-BENT, LED, BRIEF = {"curvature": 1.0}, {"displacement": (1e-3, 0.0)}, {"duration": 1e-3}
+LED, BRIEF = {"displacement": (1e-3, 0.0)}, {"duration": 1e-3}
+BENT, CURLED, CLAMPED = {"pre_strain": {"curvature": 1.0}}, {"anticlastic": {}}, {"clamped_width": {}}
 VAST = WIDE | {"width": 10.0}
 #: A call, and what is said of it.
 ASKED: list[tuple[Callable[[], object], str]] = [
@@ -104,14 +100,17 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: bare(**SIDES, second_moment_of_area=1.05e-10), "got 1.05e-10, expected 1.04167e-10, that of"),
     (lambda: bare(area=5e-5), "second_moment_of_area: got 'nothing', expected it, or width and"),
     (bare, "area: got 'nothing', expected it, or width and thickness of a rectangle [m]"),
-    (lambda: guide({"clamped_width": {}}), f"clamped_width: got 'left', {NEEDED}"),
-    (lambda: guide({"anticlastic": {}}), f"anticlastic: got 'left', {NEEDED}"),
-    (lambda: guide({"root_compliance": {"root": 1.0}}), f"root_compliance: got 'left', {NEEDED}"),
-    (lambda: alone(clamped_width={}), "clamped_width: got 'strip', expected strips clamped at both ends"),
-    (lambda: four_bar({"anticlastic": {}}, rise=0.003, section=WIDE), "got 'a', expected straight strips"),
-    (lambda: sided(anticlastic={}, pre_strain=BENT), "anticlastic: got 'natural curvature', expected"),
-    (lambda: sided(root_compliance={"root": -1.0}), "root: got -1.0, expected a number not below 0"),
-    (lambda: fe.solve_mechanism(sided(VAST, clamped_width={})), "clamped_width: got 100.0, expected a"),
+    (lambda: four_bar(CLAMPED), f"clamped_width: got 'a', {NEEDED}"),
+    (lambda: four_bar(CURLED), f"anticlastic: got 'a', {NEEDED}"),
+    (lambda: four_bar({"root_compliance": {"root": 1.0}}), f"root_compliance: got 'a', {NEEDED}"),
+    (lambda: alone(**CLAMPED), "clamped_width: got 'strip', expected strips clamped at both ends"),
+    (lambda: four_bar(CURLED, rise=0.003, section=WIDE), "got 'a', expected straight strips"),
+    (lambda: four_bar(BENT | CURLED, section=WIDE), "anticlastic: got 'natural curvature', expected strips"),
+    (
+        lambda: four_bar({"root_compliance": {"root": -1.0}}, section=WIDE),
+        "root: got -1.0, expected a number",
+    ),
+    (lambda: fe.solve_mechanism(four_bar(CLAMPED, section=VAST)), "clamped_width: got 500.0, expected a"),
     *(
         (partial(fe.plate_factors, *each), "ratio")
         for each in ((0.0, 0.3), (np.nan, 0.3), (0.5, -0.1), (0.5, 0.6))
@@ -128,8 +127,8 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: fe.solve_mechanism(four_bar(), rotation=0.1), "body: got None, expected one of crank, cou"),
     (lambda: fe.solve_mechanism(free_cantilever(), rotation=0.1), "body: got None, expected one of no"),
     (lambda: alone(driven_displacement=LED), "driven_displacement: got 'no bodies'"),
-    (lambda: fe.solve_motion(guide(), start=0.1, settled=False, **BRIEF), "settled: got False"),
-    (lambda: fe.natural_frequencies(guide(), rotation=None, held=True), "held: got True, expected a driven"),
+    (lambda: fe.solve_motion(pivot(), start=0.1, settled=False, **BRIEF), "settled: got False"),
+    (lambda: fe.natural_frequencies(pivot(), rotation=None, held=True), "held: got True, expected a driven"),
     (
         lambda: fe.solve_motion(free_cantilever(root=None), settled=False, integrator=ALPHA, **BRIEF),
         "step: got None",

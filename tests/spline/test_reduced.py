@@ -158,12 +158,7 @@ def test_a_strip_in_tension_is_resolved_by_default():
 
 
 SOFT = {"area": 5e-6, "second_moment_of_area": 1.041e-13, "youngs_modulus": 1.4e9}
-ROOTS = {
-    "width": 0.01,
-    "thickness": 0.005,
-    "effects": ("bending", "stretching", "root_compliance"),
-    "parameters": {"root_compliance": {"root": "monolithic"}},
-}
+ROOTS = SIDES | scene(("bending", "stretching"), root_compliance={"root": "monolithic"})
 ROBUST = {"penalty_stiffness": 1000.0}
 POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
 """Displacement of the centre from where a free turn would have it [m, m], and rotation [rad]."""

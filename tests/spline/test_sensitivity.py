@@ -8,7 +8,7 @@ import pytest
 
 from spline_model import cross_axis_pivot, sensitivities, solve_statics
 from tests import gates
-from tests.models import extrapolated
+from tests.models import extrapolated, scene
 from tests.table_one import BARE, SIX, TABLE_ONE
 
 #: Keywords of a pivot that its statics depend on, and the sides of its section.
@@ -20,15 +20,13 @@ UNMOVED = {"youngs_modulus": SHAPES, "width": (*SHAPES, "fibre_stress")}
 FORMS = ({}, {"control_points": 8}, {"stretch": "consistent"}, {"control_points": 5, "axial_modes": 3})
 
 #: All loads of a pivot, of a size that is seen.
-LOADED = {
-    "effects": ("bending", "stretching", "gravity", "applied_force", "applied_moment", "pre_strain"),
-    "parameters": {
-        "gravity": {"acceleration": (2e3, -9e3)},
-        "applied_force": {"force": (900.0, -1500.0)},
-        "applied_moment": {"moment": 30.0},
-        "pre_strain": {"curvature": 2.0, "strain": 1e-4},
-    },
-}
+LOADED = scene(
+    ("bending", "stretching"),
+    gravity={"acceleration": (2e3, -9e3)},
+    applied_force={"force": (900.0, -1500.0)},
+    applied_moment={"moment": 30.0},
+    pre_strain={"curvature": 2.0, "strain": 1e-4},
+)
 
 
 QUANTITIES = ("torque", "stiffness", "bending_energy", "axial_energy", "fibre_stress", *SHAPES)
@@ -145,14 +143,17 @@ def test_agrees_with_extrapolated_differences_on_many_designs(seed):
 SKEWED = TABLE_ONE | {"crossing_ratio": 0.4}
 WIDE = BARE | {"crossing_ratio": 0.4, "width": 0.03, "thickness": 0.002}
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
-PLATE = SPATIAL | {"effects": ("bending", "stretching", "clamped_width")}
-ROOTED = {"effects": (*PLATE["effects"], "anticlastic", "root_compliance")}
-ROOTED |= {"parameters": {"root_compliance": {"root": "monolithic"}}}
+PLATE = ("bending", "stretching", "clamped_width")
+ROOTED = scene((*PLATE, "anticlastic"), root_compliance={"root": "monolithic"})
 #: A design, its parameter, the rotation [rad] and a scene.
 SCENES = [
     (SKEWED, "inclination", 0.6, SPATIAL),
     *((SKEWED, name, 0.6, LOADED) for name in ("area", "crossing_ratio", "thickness")),
-    *((WIDE, name, 0.9, each) for name in ("length", "thickness", "width") for each in (PLATE, ROOTED)),
+    *(
+        (WIDE, name, 0.9, each)
+        for name in ("length", "thickness", "width")
+        for each in (SPATIAL | scene(PLATE), ROOTED)
+    ),
 ]
 
 
