@@ -1,6 +1,7 @@
 """Many designs at once, of pivots and mechanisms: single solves, in any order and number of threads."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,11 +11,9 @@ from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
-from tests.models import extrapolated
+from tests.models import extrapolated, scene
 from tests.table_one import BARE, SIX, TABLE_ONE
 
-#: What strips with sides of their own have of the third dimension.
-SECTION_EFFECTS = ("clamped_width", "anticlastic", "root_compliance")
 VALUES = {
     "thickness": np.array([3e-4, 2e-4, 1.5e-2]),  # the last: thick, so that no axial force stays outside
     "rocker_ground.youngs_modulus": np.array([206e9, 190e9, 206e9]),
@@ -95,36 +94,32 @@ def test_sensitivities_are_the_differences_of_a_batch(name, own):
         gates.check("sensitivities", np.abs(exact.derivative[..., 0] - expected).max() / scale)
 
 
-def sides_error(**coarse: float) -> float:
-    """Largest error of torques of a pivot whose strips change their sides in a batch, under plate effects."""
-    sides, effects = {"thickness": [2e-3, 1e-3], "width": [0.03, 0.02]}, SECTION_EFFECTS
-    grid = {"effects": ("bending", "stretching", *effects), "control_points": 6}
-    made = [
-        spline_model.cross_axis_pivot(**BARE | grid, thickness=h, width=b)
-        for h, b in zip(*(coarse.get(name, 1.0) * np.array(sides[name]) for name in sides), strict=True)
-    ]
-    batch = spline_model.solve_many(made[0], sides, rotation=0.3, increments=3)
+#: Pivots and numbers of them that change together: sides under plate effects, and the shape.
+PLATE = scene(("bending", "stretching", "clamped_width", "anticlastic", "root_compliance"))
+COLUMNS = {
+    "sides": (BARE | PLATE | {"control_points": 6}, {"thickness": [2e-3, 1e-3], "width": [0.03, 0.02]}),
+    "shape": (SIX, {"length": [0.07, 0.09], "inclination": [0.6, 0.9], "crossing_ratio": [0.3, 0.6]}),
+}
+
+
+def pivots_error(name: str, **coarse: float) -> float:
+    """Largest error of torques of a pivot whose numbers change in a batch, some of them times a factor."""
+    given, columns = COLUMNS[name]
+    rows = [{key: coarse.get(key, 1.0) * each[d] for key, each in columns.items()} for d in range(2)]
+    made = [spline_model.cross_axis_pivot(**given | row) for row in rows]
+    batch = spline_model.solve_many(made[0], columns, rotation=0.3, increments=3)
     paths = [spline_model.solve_statics(pivot, rotation=0.3, increments=3) for pivot in made]
-    return max(
-        float(np.abs(torque - path.torque).max() / np.abs(path.torque).max())
-        for torque, path in zip(batch.torque, paths, strict=True)
-    )
+    right = np.array([path.torque for path in paths])
+    return float((np.abs(batch.torque - right).max(axis=1) / np.abs(right).max(axis=1)).max())
 
 
-def test_a_batch_of_other_sides_has_their_profiles():
-    """Requirement: rigidity along a strip and flattening follow its b/L and t/L, design by design."""
-    gates.check("spline_batch_mechanism", sides_error())
-    gates.refuse("spline_batch_mechanism", sides_error)
-
-
-def test_a_batch_by_several_numbers_of_the_shape_has_the_pivots_of_all_of_them():
-    """Requirement: length, inclination and crossing ratio place the strips of each design together."""
-    shapes = {"length": [0.07, 0.09], "inclination": [0.6, 0.9], "crossing_ratio": [0.3, 0.6]}
-    batch = spline_model.solve_many(spline_model.cross_axis_pivot(**SIX), shapes, rotation=0.3, increments=3)
-    for d, torque in enumerate(batch.torque):
-        pivot = spline_model.cross_axis_pivot(**SIX | {name: column[d] for name, column in shapes.items()})
-        right = spline_model.solve_statics(pivot, rotation=0.3, increments=3).torque
-        gates.check("spline_batch_mechanism", float(np.abs(torque - right).max() / np.abs(right).max()))
+@pytest.mark.parametrize("name", COLUMNS)
+def test_a_batch_by_several_numbers_has_the_pivots_of_all_of_them(name):
+    """Requirement: length, inclination and crossing ratio place the strips of each design together; rigidity
+    along a strip and flattening follow its b/L and t/L, design by design."""
+    gates.check("spline_batch_mechanism", pivots_error(name))
+    if name == "sides":
+        gates.refuse("spline_batch_mechanism", partial(pivots_error, name))
 
 
 def many(count=40):

@@ -113,14 +113,11 @@ def implied(cubic, amplitude, states=21):
         return state[0]
 
     quarter.terminal = True  # type: ignore[attr-defined]
-    motion = solve_ivp(
-        lambda _, s: [s[1], -(stiffness * s[0] + cubic * s[0] ** 3) / whole],
-        (0.0, 1.0),
-        [amplitude, 0.0],
-        events=quarter,
-        rtol=1e-11,
-        atol=1e-12,
-    )
+
+    def rates(_, state):
+        return [state[1], -(stiffness * state[0] + cubic * state[0] ** 3) / whole]
+
+    motion = solve_ivp(rates, (0.0, 1.0), [amplitude, 0.0], events=quarter, rtol=1e-11, atol=1e-12)
     found = metrics.quasi_static_frequency(rotation, centre, energy, mass=mass, moment_of_inertia=inertia)
     return abs(found * 4.0 * motion.t_events[0][0] - 1.0)
 

@@ -81,14 +81,8 @@ def code_without_a_reader(*words: str, errors: int | None = subprocess.PIPE) -> 
     read, write = os.pipe()
     os.close(read)
     try:
-        done = subprocess.run(
-            [sys.executable, "-m", "studies", *words],
-            cwd=ROOT,
-            stdout=write,
-            stderr=errors,
-            text=True,
-            check=False,
-        )
+        command, streams = [sys.executable, "-m", "studies", *words], {"stdout": write, "stderr": errors}
+        done = subprocess.run(command, cwd=ROOT, **streams, text=True, check=False)
     finally:
         os.close(write)
     return done.returncode, done.stderr or ""

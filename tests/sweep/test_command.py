@@ -35,15 +35,9 @@ def started(*words):
 
     What runs in the background of a script has it ignored, and hands that on.
     """
-    return subprocess.Popen(
-        command(*words),
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+    own = {"start_new_session": True, "preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(command(*words), cwd=ROOT, **pipes, **own)
 
 
 def ended(process):
