@@ -1,12 +1,15 @@
 """Critical loads, one verdict in table, JSON and exit code; what is not resolved, and where a path ends."""
 
+import json
+import math
 import re
 
 import pytest
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.design import read_design
+from studies.cases.design import as_toml, read_design
+from tests.goldens.answers import document_of
 from tests.suite.refused import FINDS
 
 #: Right value: shooting on a stretchable Kirchhoff rod [N].
@@ -119,6 +122,26 @@ def test_a_spline_that_stops_says_where_it_buckled(command, tmp_path):
     assert outcome.code == 3
     assert re.search(r"lost its stability before, first at load factor \S+ \(force \d+ N\)", outcome.err)
     assert "--model fe may go further" in outcome.err
+
+
+def test_what_a_converged_path_passed_is_told(command, tmp_path):
+    """A path that reached its end says what it passed, in the table and in JSON, with the load factor."""
+    path, column = tmp_path / "column.toml", document_of("column")
+    column["effects"]["applied_force"]["force_N"] = [-4, 0]
+    path.write_text(as_toml(column), encoding="utf-8")
+    words = ["solve", path, "--model", "spline"]
+    answer = json.loads(command(*words, "--json", "-").out)
+    outcome = command(*words)
+    assert (outcome.code, outcome.err, answer["status"]) == (0, "", "converged")
+    assert answer["message"]
+    assert answer["message"] in outcome.out
+    (point,) = answer["critical_points"]
+    euler = (math.pi / 2) ** 2  # one end free, EI and L one
+    assert point["kind"] == "bifurcation"
+    assert point["force_N"] == pytest.approx(euler, rel=1e-3)
+    assert point["rotation_rad"] is None
+    assert point["load_factor"] == pytest.approx(euler / 4.0, rel=1e-3)
+    assert f"bifurcation: load factor {point['load_factor']:.6g}" in outcome.out
 
 
 @pytest.mark.slow
