@@ -9,7 +9,7 @@ from studies.__main__ import main
 from studies.cases.design import document_of
 from studies.cases.problem import named_case
 from studies.design.question import Question
-from tests.exchange.test_data_page import described
+from tests.exchange.test_files import described
 
 FINDS = Path(__file__).parent.parent / "suite" / "finds"
 CASE = "cross_axis_pivot"
