@@ -32,7 +32,7 @@ figures: $(STAMP)  ## compute the figures of the paper and the convergence studi
 	$(BIN)/python -m studies run paper convergence
 	$(BIN)/python -m studies readme
 
-results: $(STAMP)  ## compute all studies again (10 minutes), refresh the README
+results: $(STAMP)  ## compute all studies again (6 minutes), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
 

@@ -2,7 +2,7 @@
 
 Data flow one way, and so do the imports:
 
-    strip, effects -> model; law, places, loads -> actions; actions, matrix -> structure (with the mesh)
+    read -> strip, effects -> model; law, places, loads -> actions; these, matrix -> structure (with the mesh)
     structure -> control (with Newton's method) -> response (with critical points) -> path -> statics
     structure -> mass, drives -> motion -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes

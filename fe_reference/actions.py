@@ -83,7 +83,7 @@ def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
     x free, -Y stands for X and X for Y.
 
     Args:
-        coupled: bodies that are led one way (K, 7), as of `mass.couplings`.
+        coupled: bodies that are led one way (K, 7), as of `Scheme.couplings`.
         u, v: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
         out: resisting forces (rows, 3) [N, N m], changed.
     """
@@ -123,7 +123,7 @@ def advance(
     Args:
         tables, written, curvature: as of `resist`.
         histories: of the loads.
-        coupled: bodies that are led one way (K, 7), as of `mass.couplings`.
+        coupled: bodies that are led one way (K, 7), as of `Scheme.couplings`.
         led: places in the flattened rows of the coordinates that drives lead (H,).
         compliance: inverse mass (rows, 3) [1/kg, 1/(kg m^2)] of free nodes and bodies, else 0.
         state: displacements u (rows, 3) [m, rad] and velocities v (rows, 3) [m/s, rad/s], both changed.

@@ -14,12 +14,14 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.linalg import null_space
 
 from .arrays import Array, Flags, Indices
-from .effects import ALWAYS_FULL, factor_of, twice
+from .effects import factor_of, twice
 from .errors import InvalidParameter
 from .matrix import Factors, Singular
 from .places import FREE, GROUND
@@ -172,53 +174,41 @@ class Control:
 
 
 def spans(
-    structure: Structure,
-    body: int | None,
-    rotations: Sequence[float] | None,
-    load: Array | None,
-    *,
-    first: bool,
-    starts: bool,
+    structure: Structure, body: int | None, rotations: Sequence[float] | None, *, first: bool, starts: bool
 ) -> list[Control]:
     """Return the spans of a path on which a body is driven through `rotations` [rad], one leg each.
 
-    Other drives and the load grow with the load factor over all legs. With `first` they grow in a leg of
-    their own before the rotation, and then are constant. Drives are led to their ends, or to the begin of
-    their histories if a motion `starts` there.
+    Other drives and the load grow with the load factor over all legs. With `first` they grow in a leg
+    of their own before the rotation, and then are constant; but a body that is led goes where both lead it.
+    Drives are led to their ends, or to the begin of their histories if a motion `starts` there, and so are
+    loads.
 
     Raises:
         InvalidParameter: a rotation that another drive prescribes too.
     """
+    load = structure.loads.factors(0.0 if starts else None)
+    led = structure.model.prescribed(body)
+    moved = any(end for end, _ in led.values())
+    before = first and any(rotations or ()) and load is not None and not moved
     turn = structure.body_slice(0 if body is None else body).stop - 1
-    legs = max(len(rotations or ()), 1) + first
+    legs = max(len(rotations or ()), 1) + before
     parameters = [leg / legs for leg in range(legs + 1)]
-    shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if first else parameters
-    ways = {
-        structure.first_body + at: np.multiply(
-            shares, end * factor_of((starts and history) or ALWAYS_FULL, 0.0)
-        )
-        for at, (end, history) in structure.model.prescribed(body).items()
-    }
+    shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if before else parameters
+    ways: dict[int, Any] = {}
+    for at, (end, history) in led.items():
+        begin = factor_of(history, 0.0) if starts and history else 1.0
+        ways[structure.first_body + at] = np.multiply(shares, end * begin)
     if rotations is not None:
         if turn in ways:
             raise twice(structure.model.body_names, turn - structure.first_body)
-        ways[turn] = np.array([0.0] * (1 + first) + [*rotations])
+        ways[turn] = [0.0] * (1 + before) + [*rotations]
     props = loose_coordinates(structure, ways)
-    ways |= {int(k): np.zeros(legs + 1) for k in props}
+    ways |= {int(k): [0.0] * (legs + 1) for k in props}
     values = np.reshape([*ways.values()], (-1, legs + 1)).T
-    return [
-        Control(
-            structure=structure,
-            held=np.array([*ways], dtype=np.int64),
-            values=values[leg : leg + 2],
-            span=(parameters[leg], parameters[leg + 1]),
-            load=load,
-            watched=None if rotations is None else turn,
-            shares=(shares[leg], shares[leg + 1]),
-            props=props,
-        )
-        for leg in range(legs)
-    ]
+    given: dict[str, Any] = {"structure": structure, "load": load, "props": props}
+    given |= {"held": np.array([*ways], dtype=np.int64), "watched": None if rotations is None else turn}
+    parts = zip(pairwise(parameters), pairwise(shares), pairwise(values), strict=True)
+    return [Control(span=span, shares=share, values=np.array(ends), **given) for span, share, ends in parts]
 
 
 def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> State:
@@ -316,21 +306,19 @@ def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
     return np.array(chosen, dtype=np.int64)
 
 
-def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
+def require_balance(control: Control, residual: Array) -> None:
     """Check that coordinates that are held for want of anything else bear no force.
 
     Args:
-        structure: reduced model.
-        props: these coordinates (P,).
+        control: the last span of the path.
         residual: forces of the state (size,) [N, N m].
-        load: factors of the loads (K,) [1], or None.
 
     Raises:
         NothingHolds: such a coordinate bears a force.
     """
-    rest = np.zeros(structure.size)
+    structure, load, rest = control.structure, control.load, np.zeros(control.structure.size)
     largest = 0.0 if load is None else float(np.abs(structure.load_force(rest, load)[0]).max())
-    for k in props:
+    for k in control.props:
         if abs(residual[k]) > NONE * (structure.scale[k] + largest):
             body, axis = divmod(int(k) - structure.first_body, 3)
             raise NothingHolds(structure.model.body_names[body], axis, abs(float(residual[k])))

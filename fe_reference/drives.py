@@ -14,9 +14,10 @@ from typing import Annotated
 
 import numpy as np
 
+from . import read
 from .arrays import Array, Flags
 from .effects import ALWAYS_FULL, factor_of, twice
-from .errors import Checked, History, InvalidParameter, finite, read_history
+from .errors import InvalidParameter
 from .mass import RigidBodies
 from .model import Model
 from .structure import Structure
@@ -27,7 +28,7 @@ ALWAYS = (0.0, math.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrivenRotation(Checked):
+class DrivenRotation(read.Checked):
     """The rotation of a body prescribed as an angle times the change of a history, from the current rotation.
 
     A body that is re-clamped loses the velocity that the drive does not have.
@@ -58,8 +59,8 @@ class DrivenRotation(Checked):
     """
 
     body: str | None = None
-    angle: Annotated[float, finite, "rad"]
-    history: Annotated[History, read_history] = ALWAYS_FULL
+    angle: Annotated[float, read.finite, "rad"]
+    history: Annotated[read.History, read.history] = ALWAYS_FULL
     held: tuple[float, float] = ALWAYS
 
     def __post_init__(self) -> None:
@@ -137,17 +138,15 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     Raises:
         InvalidParameter: two drives of one coordinate.
     """
-    drives: list[tuple[int, float, History, tuple[float, float]]] = []
+    led = model.prescribed(None).items()
+    drives = {at: (end, history, ALWAYS) for at, (end, history) in led if history is not None}
     if drive is not None:
         turn = 3 * model.body_index(drive.body) + 2
-        drives.append((turn, drive.angle, drive.history, drive.held))
-    for at, (end, history) in model.prescribed(None).items():
-        if history is not None:
-            if drives and at == drives[0][0]:
-                raise twice(model.body_names, at)
-            drives.append((at, end, history, ALWAYS))
+        if turn in drives:
+            raise twice(model.body_names, turn)
+        drives[turn] = drive.angle, drive.history, drive.held
     times = {duration}
-    for _, _, history, held in drives:
+    for _, history, held in drives.values():
         times |= {*held, *(time for time, _ in history)}
     instants = [0.0]
     for time in sorted(times):
@@ -157,7 +156,7 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     for begin, end in pairwise([*instants[:-1], duration]):
         rates = {
             at: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * target
-            for at, target, history, held in drives
+            for at, (target, history, held) in drives.items()
             if held[0] < 0.5 * (begin + end) < held[1]
         }
         before = spans[-1].rates if spans else {}

@@ -16,20 +16,10 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from . import read
 from .arrays import Array
 from .drives import DrivenRotation, Span, drive_spans
-from .errors import (
-    Checked,
-    ConvergenceError,
-    InvalidParameter,
-    choice,
-    count,
-    finite,
-    flag,
-    optional,
-    positive,
-    require_kind,
-)
+from .errors import ConvergenceError, InvalidParameter
 from .mass import about_mass_centre, carried_over
 from .model import Model, require_model
 from .modes import first_frequency
@@ -56,7 +46,7 @@ FEWEST = 4
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run(Checked):
+class Run(read.Checked):
     """What is asked of a motion.
 
     Attributes:
@@ -79,23 +69,23 @@ class Run(Checked):
         progress: called as progress(done, total) after every sample.
     """
 
-    duration: Annotated[float, positive, "s"]
-    start: Annotated[float | None, optional, finite, "rad"] = None
+    duration: Annotated[float, read.positive, "s"]
+    start: Annotated[float | None, read.optional, read.finite, "rad"] = None
     body: str | None = None
     drive: DrivenRotation | None = None
     settled: bool = True
-    increments: Annotated[int, count] = 20
-    step: Annotated[float | None, optional, positive, "s"] = None
-    integrator: Annotated[str, choice, INTEGRATORS] = INTEGRATORS[0]
-    samples: Annotated[int, count] = 1000
+    increments: Annotated[int, read.count] = 20
+    step: Annotated[float | None, read.optional, read.positive, "s"] = None
+    integrator: Annotated[str, read.choice, INTEGRATORS] = INTEGRATORS[0]
+    samples: Annotated[int, read.count] = 1000
     aligned: bool = False
-    most_steps: Annotated[int, count] = MOST_STEPS
+    most_steps: Annotated[int, read.count] = MOST_STEPS
     progress: Progress | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.drive is not None:
-            require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
+            read.require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
         if self.start is not None and not self.settled:
             raise InvalidParameter("settled", self.settled, "True for a start at a held rotation [1]")
 
@@ -138,12 +128,8 @@ class Run(Checked):
                         "remove strip_inertia, if strips are light, and take --integrator generalised-alpha "
                         f"with a --step (its own are about {implicit:.2g})"
                     )
-            raise InvalidParameter(
-                "duration",
-                self.duration,
-                f"at most {self.most_steps:.3g} steps of {step:.3g} s, this is {steps:.3g} of them: {way}; "
-                "or allow more by most_steps",
-            )
+            told = f"steps of {step:.3g} s, this is {steps:.3g} of them: {way}; or allow more by most_steps"
+            raise InvalidParameter("duration", self.duration, f"at most {self.most_steps:.3g} {told}")
         samples = min(self.samples, steps)
         if 2 * samples * size > MOST_NUMBERS:
             most = MOST_NUMBERS // (2 * size)
@@ -246,7 +232,7 @@ def solve_motion(
     """
     require_model(mechanism)
     mechanism.effects.require_inertia()
-    run, check = Run(**asked), flag("check", check)
+    run, check = Run(**asked), read.flag("check", check)
     y, remark = np.zeros(structure_of(mechanism).size), ""
     if run.settled:
         y, remark = settled_state(mechanism, run.start, run.body, run.increments, starts=True)
@@ -294,26 +280,18 @@ def _integrate(model: Model, y: Array, run: Run) -> tuple[Samples, dict[str, flo
     return samples, settings | choices
 
 
-def checked(
-    model: Model,
-    motion: Trajectory,
-    *,
-    start: float | None,
-    body: str | None = None,
-    drive: DrivenRotation | None = None,
-) -> Trajectory:
+def checked(model: Model, motion: Trajectory, **held: Any) -> Trajectory:
     """Return a motion with its estimated errors [rad, m] and `resolution`, by companions of other elements.
 
     A motion that stopped and one of a few instants are returned as they are.
 
     Args:
-        model, body, drive: of the motion, which began in equilibrium.
-        start: rotation at the start [rad]; None: no rotation is driven.
+        model: of the motion, which began in equilibrium.
+        held: `start` [rad], `body` and `drive` of it, as of `Run`.
     """
     if motion.status is not Status.CONVERGED or len(motion.time) < 3:
         return motion
-    asked = {"start": start, "body": body, "drive": drive, "integrator": motion.settings["integrator"]}
-    remark = ""
+    asked, remark = held | {"integrator": motion.settings["integrator"]}, ""
     for elements in (model.elements // 2, 2 * model.elements):
         if elements >= FEWEST:
             try:

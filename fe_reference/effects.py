@@ -10,30 +10,17 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
-from .errors import (
-    Checked,
-    History,
-    InvalidParameter,
-    Pair,
-    choice,
-    finite,
-    flag,
-    not_negative,
-    not_negatives,
-    optional,
-    pair,
-    partly,
-    read_history,
-)
+from . import read
+from .errors import InvalidParameter
 
 #: The history of what does not change.
-ALWAYS_FULL: History = ((0.0, 1.0),)
+ALWAYS_FULL: read.History = ((0.0, 1.0),)
 #: Coordinates of a body: those of its centre, and its turn.
 WAYS = ("x", "y", "rotation")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effect(Checked):
+class Effect(read.Checked):
     """An effect without parameters."""
 
 
@@ -56,11 +43,11 @@ class Load(Several):
 
     body: str | None = None
     strip: str | None = None
-    history: Annotated[History, read_history] = ALWAYS_FULL
-    force: Annotated[Pair, pair, "N"] = (0.0, 0.0)
-    moment: Annotated[float, finite, "N m"] = 0.0
-    at: Annotated[Pair | None, optional, pair, "m"] = None
-    follower: Annotated[bool, flag] = False
+    history: Annotated[read.History, read.history] = ALWAYS_FULL
+    force: Annotated[read.Pair, read.pair, "N"] = (0.0, 0.0)
+    moment: Annotated[float, read.finite, "N m"] = 0.0
+    at: Annotated[read.Pair | None, read.optional, read.pair, "m"] = None
+    follower: Annotated[bool, read.flag] = False
 
 
 def _ways(name: str, value: Any) -> tuple[str, ...]:
@@ -84,10 +71,10 @@ class Prescribed(Several):
     """
 
     body: str | None = None
-    history: Annotated[History | None, optional, read_history] = None
-    displacement: Annotated[tuple[float | None, float | None] | None, optional, partly, "m"] = None
-    angle: Annotated[float | None, optional, finite, "rad"] = None
-    fixed: Annotated[tuple[str, ...] | None, optional, _ways] = None
+    history: Annotated[read.History | None, read.optional, read.history] = None
+    displacement: Annotated[tuple[float | None, float | None] | None, read.optional, read.partly, "m"] = None
+    angle: Annotated[float | None, read.optional, read.finite, "rad"] = None
+    fixed: Annotated[tuple[str, ...] | None, read.optional, _ways] = None
 
     @property
     def ends(self) -> tuple[float | None, ...]:
@@ -111,10 +98,10 @@ class Spring(Several):
 
     body: str | None = None
     other: str | None = None
-    stiffness: Annotated[Pair, not_negatives, "N/m"] = (0.0, 0.0)
-    rotational_stiffness: Annotated[float, not_negative, "N m/rad"] = 0.0
-    damping: Annotated[Pair, not_negatives, "N s/m"] = (0.0, 0.0)
-    rotational_damping: Annotated[float, not_negative, "N m s/rad"] = 0.0
+    stiffness: Annotated[read.Pair, read.not_negatives, "N/m"] = (0.0, 0.0)
+    rotational_stiffness: Annotated[float, read.not_negative, "N m/rad"] = 0.0
+    damping: Annotated[read.Pair, read.not_negatives, "N s/m"] = (0.0, 0.0)
+    rotational_damping: Annotated[float, read.not_negative, "N m s/rad"] = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -125,7 +112,7 @@ class Spring(Several):
             raise InvalidParameter("other", self.other, "another body, or None for the ground [name]")
 
 
-def factor_of(points: History, time: float) -> float:
+def factor_of(points: read.History, time: float) -> float:
     """Return the factor at an instant [s]: constant before the first and after the last."""
     return float(np.interp(time, *np.transpose(points)))
 
@@ -142,7 +129,7 @@ CURL = SIDES[:2]
 class Gravity(Effect):
     """Weight of strips and bodies: acceleration (g_x, g_y) [m/s^2]. Acts whether or not they have inertia."""
 
-    acceleration: Annotated[Pair, pair, "m/s^2"]
+    acceleration: Annotated[read.Pair, read.pair, "m/s^2"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,22 +140,22 @@ class StripDamping(Effect):
         relaxation_time: b, at least 0 [s].
     """
 
-    relaxation_time: Annotated[float, not_negative, "s"]
+    relaxation_time: Annotated[float, read.not_negative, "s"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StripDrag(Effect):
     """Force -a mu v per unit length on the strips, in proportion to their mass, with the rate a [1/s]."""
 
-    rate: Annotated[float, not_negative, "1/s"]
+    rate: Annotated[float, read.not_negative, "1/s"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyDamping(Effect):
     """Damper between every body and ground: translation of its centre [N s/m] and rotation [N m s]."""
 
-    translation: Annotated[float, not_negative, "N s/m"] = 0.0
-    rotation: Annotated[float, not_negative, "N m s"] = 0.0
+    translation: Annotated[float, read.not_negative, "N s/m"] = 0.0
+    rotation: Annotated[float, read.not_negative, "N m s"] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,13 +166,13 @@ class PreStrain(Effect):
     N = EA (eps - strain), with kappa the change of curvature from the shape at rest.
     """
 
-    curvature: Annotated[float, finite, "1/m"] = 0.0
-    strain: Annotated[float, finite, "1"] = 0.0
+    curvature: Annotated[float, read.finite, "1/m"] = 0.0
+    strain: Annotated[float, read.finite, "1"] = 0.0
 
 
 def _root_length(name: str, value: Any) -> float:
     """Return the extra length of a root in thicknesses of the strip, by number or by name."""
-    return MONOLITHIC if value == "monolithic" else not_negative(name, value, "thicknesses")
+    return MONOLITHIC if value == "monolithic" else read.not_negative(name, value, "thicknesses")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,7 +240,7 @@ class Effects:
         """
         names = tuple(effects)
         for name in names:
-            choice("effects", name, tuple(KNOWN))
+            read.choice("effects", name, tuple(KNOWN))
         rotary = "section_rotary_inertia" not in names or "strip_inertia" in names
         for holds, expected in (
             (len(set(names)) == len(names), "every name once"),

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import read
 from .arrays import Array, Indices, kernel
-from .effects import BodyDamping, Load, Spring, StripDamping
-from .errors import History
+from .effects import BodyDamping, Load, Spring
 from .matrix import Symmetric
 from .model import Model
 from .places import swept, turned
@@ -122,7 +122,7 @@ class Loads:
     @classmethod
     def of(cls, model: Model, points: Array) -> "Loads":
         """Return those of a model whose bodies are reduced about `points` (B, 2) [m]."""
-        rows, table, histories = [], [], list[History]()
+        rows, table, histories = [], [], list[read.History]()
         for load in model.effects.every(Load):
             if load.strip is not None:
                 row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)
@@ -180,18 +180,17 @@ Links = tuple[int, Indices, Array, Array, Array]
 Parts = tuple[float, float, float]
 
 
-def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]]) -> Links:
+def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]], relaxation: float) -> Links:
     """Return the links of a model whose bodies are reduced about `points` (B, 2) [m].
 
-    soft: of the roots that give way: node, row of what it is on, and stiffness [N m].
+    soft: of the roots that give way: node, row of what it is on, and stiffness [N m]. relaxation: their time
+    of relaxation [s].
     """
     bodies, effects, found = len(model.bodies), model.effects, []
-    material, damper = effects.find(StripDamping), effects.find(BodyDamping)
-    relaxation = 0.0 if material is None else material.relaxation_time
+    damper = effects.find(BodyDamping)
     for node, row, stiffness in soft:
         if stiffness > 0.0:  # a hinge has none
-            turn = np.array([0.0, 0.0, stiffness])
-            found.append((node, row, np.zeros((2, 2)), turn, relaxation * turn))
+            found.append((node, row, *(0.0,) * 6, stiffness, 0.0, 0.0, relaxation * stiffness))
     roots, offsets = len(found), np.vstack([model.centres - points, np.zeros((1, 2))])
     every = [(model.body_index(each.body), each) for each in effects.every(Spring)]
     if damper is not None and (damper.translation or damper.rotation):
@@ -199,15 +198,13 @@ def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]]
         every += [(body, own) for body in range(bodies)]
     for body, spring in every:
         other = bodies if spring.other is None else model.body_index(spring.other)
-        stiff = np.array([*spring.stiffness, spring.rotational_stiffness])
-        viscous = np.array([*spring.damping, spring.rotational_damping])
+        stiff = (*spring.stiffness, spring.rotational_stiffness)
+        damping = (*spring.damping, spring.rotational_damping)
         rows = model.arcs.size + body, model.arcs.size + other
-        found.append((*rows, offsets[[body, other]], stiff, viscous))
-    first, second, *others = zip(*found, strict=True) if found else ((),) * 5
-    ends = np.array([first, second], dtype=np.int64).T.copy()
-    shapes = ((-1, 2, 2), (-1, 3), (-1, 3))
-    arms, stiff, viscous = (np.reshape(each, shape) for each, shape in zip(others, shapes, strict=True))
-    return roots, ends, arms, stiff, viscous
+        found.append((*rows, *offsets[[body, other]].flat, *stiff, *damping))
+    table = np.reshape(np.array(found, dtype=np.float64), (-1, 12))
+    ends, arms, stiffnesses, viscous = (part.copy() for part in np.split(table, (2, 6, 9), axis=1))
+    return roots, ends.astype(np.int64), arms.reshape(-1, 2, 2), stiffnesses, viscous
 
 
 @kernel()

@@ -22,11 +22,11 @@ Source of the scaled diagonal: E. Hinton, T. Rock, O. C. Zienkiewicz, Earthquake
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Array, Flags
+from .arrays import Array
 from .matrix import Symmetric
 from .places import swept, turned
 from .structure import Structure
@@ -39,8 +39,8 @@ class RigidBodies:
     """The bodies with the lumped masses of the nodes attached to them, each as one rigid body.
 
     Attributes:
-        mass (B,) [kg]; centre of mass of the whole at rest (B, 2) [m]; moment_of_inertia (B,) about that
-        centre, or the point that its structure is reduced about [kg m^2].
+        mass (B,) [kg]; centre of mass of the whole at rest (B, 2) [m]; moment_of_inertia (B,) about the point
+        that its structure is reduced about [kg m^2].
     """
 
     mass: Array
@@ -90,14 +90,16 @@ def _own_inertia(structure: Structure) -> Array:
     return own
 
 
-def _rigid_bodies(structure: Structure) -> RigidBodies:
-    """Return the bodies of the model together with the lumped masses of the attached nodes."""
-    (attached, carried, offsets, rigid), own = structure.carried, _own_inertia(structure)
-    nodes, centres, carried = (
-        _lumped_nodes(structure)[attached],
-        structure.model.centres,
-        carried - structure.nodes,
-    )
+def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[Structure, RigidBodies]:
+    """Return the same structure reduced about the centres of mass of the bodies with their attached masses.
+
+    There the lumped mass matrix is diagonal and constant: no coupling of translation and rotation, hence no
+    centrifugal terms in the equations of motion, which are exact. Bodies whose centre is `led` are reduced
+    about that: at a constant velocity of it their moment of inertia about it is all that is left.
+    """
+    (attached, rows, offsets, rigid), own = structure.carried, _own_inertia(structure)
+    nodes, centres = _lumped_nodes(structure)[attached], structure.model.centres
+    carried = rows - structure.nodes
     carrier = np.append(carried, np.arange(len(own)))
     masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid, own[:, 1])
     places = np.vstack([offsets + structure.points[carried], centres])
@@ -108,39 +110,11 @@ def _rigid_bodies(structure: Structure) -> RigidBodies:
     total, centre = summed(masses), centres.copy()
     moments = np.stack([summed(masses * part) for part in places.T], axis=1)
     np.divide(moments, total[:, None], out=centre, where=total[:, None] > 0.0)
-    spread = masses * np.sum((places - centre[carrier]) ** 2, axis=1)
-    return RigidBodies(mass=total, centre=centre, moment_of_inertia=summed(spread + turning))
-
-
-def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[Structure, RigidBodies]:
-    """Return the same structure reduced about the centres of mass of the bodies with their attached masses.
-
-    There the lumped mass matrix is diagonal and constant: no coupling of translation and rotation, hence no
-    centrifugal terms in the equations of motion, which are exact. Bodies whose centre is `led` are reduced
-    about that: at a constant velocity of it their moment of inertia about it is all that is left.
-    """
-    bodies = _rigid_bodies(structure)
-    points = bodies.centre.copy()
-    for body in led:
-        points[body] = structure.model.bodies[body].centre
-    steiner = bodies.mass * np.sum((bodies.centre - points) ** 2, axis=1)
-    bodies = replace(bodies, moment_of_inertia=bodies.moment_of_inertia + steiner)
+    points = centre.copy()
+    points[[*led]] = centres[[*led]]
+    spread = masses * np.sum((places - points[carrier]) ** 2, axis=1)
+    bodies = RigidBodies(mass=total, centre=centre, moment_of_inertia=summed(spread + turning))
     return Structure(structure.model, points), bodies
-
-
-def couplings(structure: Structure, bodies: RigidBodies, held: Flags) -> Array:
-    """Return of each body that is led one way, its mass off the led point, what couples its other motions.
-
-    The rows (K, 7): row of the body, free direction, mass, moment of inertia, first moment (2,) [kg m],
-    whether the turn is led as well.
-    """
-    rows = []
-    for k, mass in enumerate(bodies.mass):
-        x, y, turn = held[structure.body_slice(k)]
-        first = mass * (bodies.centre[k] - structure.points[k])
-        if x != y and first.any():
-            rows.append([structure.nodes + k, x, mass, bodies.moment_of_inertia[k], *first, turn])
-    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tuple[Array, Array]:

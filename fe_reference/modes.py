@@ -7,11 +7,11 @@ from scipy.linalg import LinAlgError, eigh
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
+from . import read
 from .arrays import Array, Flags
 from .control import NothingHolds, loose_coordinates
 from .effects import DEFAULT_EFFECTS, Effects
-from .errors import ConvergenceError, InvalidParameter, choice
-from .errors import count as at_least_one
+from .errors import ConvergenceError, InvalidParameter
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
@@ -130,7 +130,7 @@ def natural_frequencies(
     11.55 Hz
     """
     require_model(pivot)
-    kind = choice("mass", mass, MASSES)
+    kind = read.choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
     if structure_of(pivot).loads.follows:
         expected = "a fixed direction for modes, as flutter is not modelled; `release` follows it [1]"
@@ -225,11 +225,8 @@ def _lowest(
     blurred = np.abs(energies - values) > BLURRED * np.abs(values)
     blurred[rigid] = False  # what nothing resists has round-off alone
     if blurred.any():
-        raise InvalidParameter(
-            "elements",
-            structure.stations - 1,
-            "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]",
-        )
+        expected = "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]"
+        raise InvalidParameter("elements", structure.stations - 1, expected)
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
     full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]
@@ -263,4 +260,4 @@ def _available(wanted: int, available: int) -> int:
     """Return the wanted number of modes, or as many as there are; refuse a mesh without one."""
     if not available:
         raise InvalidParameter("count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
-    return min(at_least_one("count", wanted), available)
+    return min(read.count("count", wanted), available)

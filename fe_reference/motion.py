@@ -11,9 +11,10 @@ import numpy as np
 from .actions import couple, resist
 from .arrays import Array, Flags
 from .drives import Span
+from .errors import Norms
 from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
-from .mass import RigidBodies, carried_over, couplings
+from .mass import RigidBodies, carried_over
 from .solution import Answer, Status
 from .structure import Structure, structure_of
 
@@ -76,10 +77,24 @@ class Scheme:
             held: which coordinates are led at their velocities (size,).
         """
         self.held, inert = held, (self.mass > 0.0) & ~held
-        self.coupled = couplings(self.structure, self.bodies, held)
+        self.coupled = self.couplings(held)
         self.inverse = np.where(inert, 1.0 / np.where(inert, self.mass, 1.0), 0.0)
         now = self.resist(y, v, time)
         return replace(now, a=-self.inverse * now.force)
+
+    def couplings(self, held: Flags) -> Array:
+        """Return of each body that is led one way, its mass off that point, what couples its other motions.
+
+        The rows (K, 7): row of the body, free direction, mass, moment of inertia, first moment (2,) [kg m],
+        whether the turn is led as well. What is `held` (size,) is led.
+        """
+        s, bodies, rows = self.structure, self.bodies, []
+        for k in self.off:
+            x, y, turn = held[s.body_slice(k)]
+            first = bodies.mass[k] * (bodies.centre[k] - s.points[k])
+            if x != y and first.any():
+                rows.append([s.nodes + k, x, bodies.mass[k], bodies.moment_of_inertia[k], *first, turn])
+        return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
     def resist(self, y: Array, v: Array, time: float) -> Instant:
         """Return the state of the motion with its resisting forces at an instant.
@@ -306,7 +321,7 @@ class Trajectory(Answer):
     states: Array
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
-    history: tuple[tuple[float, ...], ...]
+    history: Norms
     seconds: Mapping[str, float]
     starts_still: bool = False
     resolution: str = ""

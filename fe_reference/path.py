@@ -19,7 +19,6 @@ from time import perf_counter
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from scipy.interpolate import CubicHermiteSpline
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
@@ -111,11 +110,8 @@ class Path:
         try:
             there = respond(control, replace(found, factors=control.factors(found, GRAIN)))
         except Singular as error:
-            raise InvalidParameter(
-                "strips",
-                "a model that can move freely",
-                "clamps that hold it, or stiffnesses less far apart [1]",
-            ) from error
+            expected = "clamps that hold it, or stiffnesses less far apart [1]"
+            raise InvalidParameter("strips", "a model that can move freely", expected) from error
         self.control = control
         self.states.append(there if last is None else replace(there, work=last.work, norms=last.norms))
 
@@ -261,6 +257,8 @@ def _integral(control: Control, before: State, after: State) -> float:
     step, load, structure = after.parameter - before.parameter, control.load, control.structure
     total = 0.5 * step * (before.conjugate + after.conjugate) + step**2 / 12.0 * (before.slope - after.slope)
     if load is not None and structure.loads.follows:
+        from scipy.interpolate import CubicHermiteSpline  # whose import takes longer than a small solve
+
         ends = [(at.parameter, at.y, at.rate) for at in (before, after)]
         curve = CubicHermiteSpline(*zip(*ends, strict=True))
         for place, weight in zip(*leggauss(3), strict=True):

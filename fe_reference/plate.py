@@ -48,10 +48,10 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import root
 from skfem import Basis, BilinearForm, ElementTriArgyris, LinearForm, MeshTri, condense, solve
 from skfem.helpers import dd, ddot, trace
 
+from . import read
 from .arrays import Array
 from .errors import InvalidParameter
 from .law import TERMS
@@ -127,8 +127,7 @@ def plate_factors(width_ratio: float, poisson_ratio: float, *, halvings: int = 0
     >>> print(f"{factors.constant:.4f} {factors.linear:.4f}")
     1.0188 1.0445
     """
-    if not (np.isfinite(width_ratio) and width_ratio > 0.0):
-        raise InvalidParameter("width_ratio", width_ratio, "a number above 0")
+    read.positive("width_ratio", width_ratio, "1")
     if not 0.0 <= poisson_ratio <= 0.5:
         raise InvalidParameter("poisson_ratio", poisson_ratio, "a number between 0 and 0.5")
     mesh = MeshTri.init_tensor(*_lines(0.5 / width_ratio)).refined(halvings)
@@ -273,6 +272,8 @@ def _layers(width_ratio: float, poisson_ratio: float) -> tuple[float, float]:
         found = 1.0 / np.array([weights @ compliance, 12.0 * (weights * u * u) @ compliance])
         gap: Array = (found - known) / square
         return gap
+
+    from scipy.optimize import root  # whose import takes longer than a small solve
 
     fit = root(residual, [0.0, np.log(min(0.2 * width_ratio, 0.25))], tol=1e-14)
     if not np.abs(residual(fit.x)).max() <= FITTED:

@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from . import read
 from .arrays import Array
 from .effects import WAYS
-from .errors import positive
 from .model import Model
 from .response import CriticalPoint
 from .solution import ENERGIES, ErrorEstimate, StaticSolution, Status
@@ -57,7 +57,7 @@ def refine(
         errors. If the answer of a mesh is not complete, this answer without limits and estimate; but if
         coarser ones are and agree, round-off stopped it, and the best of these is returned.
     """
-    positive("accuracy", accuracy, "1")
+    read.positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []
     meshes: list[int] = []
     answer, best = solve(model), None
@@ -151,8 +151,8 @@ def limit_of(model: Model, accuracy: float, solve: Callable[[Model], StaticSolut
 
     found, refined, estimate = refine(model, accuracy, kept, quantities, JUDGED)
     if estimate is not None:
-        limits: dict[str, Any] = {each.name: refined.get(each.name) for each in fields(found)}
-        limits = {name: values for name, values in limits.items() if values is not None}
+        own = {each.name for each in fields(found)}
+        limits: dict[str, Any] = {name: values for name, values in refined.items() if name in own}
         for name in ("bodies", "tips"):
             limits[name] = dict(zip(getattr(found, name), limits[name], strict=True))
         told = missed(estimate)

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
 
 from .actions import Tables
 from .arrays import Array, Flags, kernel
@@ -245,6 +244,8 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
         if found.factors is None:
             return stiff + part * (soft - stiff)
         return respond(control, found).stiffness
+
+    from scipy.optimize import brentq  # whose import takes longer than a small solve
 
     part = brentq(remaining, 0.0, 1.0, xtol=PLACED)
     y, parameter = _part_of_the_way(before, after, part)

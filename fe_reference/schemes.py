@@ -41,7 +41,7 @@ from .arrays import Array, Flags
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .loads import fastest
-from .mass import RigidBodies, couplings, lumped_elements
+from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Instant, Samples, Scheme
 from .structure import Structure
@@ -57,11 +57,10 @@ class Explicit(Scheme):
     def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
         super().__init__(structure, bodies)
         if not np.all(self.mass > 0.0):
-            raise InvalidParameter(
-                "integrator",
-                "central-difference",
-                "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]",
+            expected = (
+                "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]"
             )
+            raise InvalidParameter("integrator", "central-difference", expected)
 
     def critical_step(self, y: Array, held: Flags) -> float:
         """Return a step [s] below which the scheme is stable for small motion about y (size,) [m, rad].
@@ -85,7 +84,7 @@ class Explicit(Scheme):
         square = self._highest(inertia, y, TANGENT)
         square += float(np.max(s.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
         square += s.loads.steepest(inertia) + fastest(links, links[3], mass, inertia)
-        for _, _, own, turning, *first, turn in couplings(s, self.bodies, held):
+        for _, _, own, turning, *first, turn in self.couplings(held):
             square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
         decay = s.drag + fastest(links, links[4], mass, inertia)
         if s.relaxation:

@@ -28,23 +28,13 @@ from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
-from scipy.interpolate import krogh_interpolate
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from skfem import Basis, ElementHex2, ElementHexS2, MeshHex
 from skfem.quadrature import get_quadrature
 
+from . import read
 from .arrays import Array, Indices
-from .errors import (
-    Checked,
-    ConvergenceError,
-    InvalidParameter,
-    choice,
-    count,
-    finite,
-    not_negative,
-    positive,
-    within,
-)
+from .errors import ConvergenceError, InvalidParameter
 
 #: Elements with 20 and 27 nodes, the order of the quadrature that each of them needs, and how many times more
 #: elements a strip has along its length than over its thickness. With full integration it needs more of them.
@@ -64,7 +54,7 @@ def _lines(cells: int, low: float, high: float) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SolidStrip(Checked):
+class SolidStrip(read.Checked):
     """A meshed strip: along x from 0 to the length, thickness along y, half of the width along z.
 
     Parameters
@@ -103,15 +93,15 @@ class SolidStrip(Checked):
     (8, 60)
     """
 
-    length: Annotated[float, positive, "m"]
-    width: Annotated[float, positive, "m"]
-    thickness: Annotated[float, positive, "m"]
-    youngs_modulus: Annotated[float, positive, "Pa"]
-    poisson_ratio: Annotated[float, within, -1.0, 0.5, "1"]
-    law: Annotated[str, choice, LAWS] = LAWS[0]
-    element: Annotated[str, choice, tuple(ELEMENTS)] = "serendipity"
-    fineness: Annotated[int, count] = 4
-    support: Annotated[float, not_negative, "m"] = 0.0
+    length: Annotated[float, read.positive, "m"]
+    width: Annotated[float, read.positive, "m"]
+    thickness: Annotated[float, read.positive, "m"]
+    youngs_modulus: Annotated[float, read.positive, "Pa"]
+    poisson_ratio: Annotated[float, read.within, -1.0, 0.5, "1"]
+    law: Annotated[str, read.choice, LAWS] = LAWS[0]
+    element: Annotated[str, read.choice, tuple(ELEMENTS)] = "serendipity"
+    fineness: Annotated[int, read.count] = 4
+    support: Annotated[float, read.not_negative, "m"] = 0.0
 
     @cached_property
     def _basis(self) -> Basis:
@@ -321,6 +311,8 @@ def solve_solids(
     >>> bool(path.torque[0] > 0.0)
     True
     """
+    from scipy.interpolate import krogh_interpolate  # whose import takes longer than a small solve
+
     root, tip = (np.asarray(ends, dtype=float) @ [1.0, 1.0j]).T
     axes = (tip - root) / strip.length
     if not np.allclose(np.abs(axes), 1.0, rtol=1e-9):
@@ -328,7 +320,7 @@ def solve_solids(
     local = strip.nodes[strip.tip, :2] @ [1.0, 1.0j]
     body = _Body(strip, axes, root[:, None] + np.multiply.outer(axes, local) - complex(*centre))
     at, known = [0.0], [np.zeros(3 + len(axes) * strip.nodes.size)]
-    turns, states = [finite("rotations", each, "rad") for each in rotations], []
+    turns, states = [read.finite("rotations", each, "rad") for each in rotations], []
     for rotation in turns:
         guess = krogh_interpolate(at, np.stack(known), rotation) if len(at) > 2 else known[-1]
         state, moment = body.equilibrium(np.asarray(guess), rotation)

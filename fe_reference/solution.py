@@ -12,7 +12,7 @@ import numpy as np
 
 from .arrays import Array, Indices
 from .effects import PreStrain
-from .errors import ConvergenceError, InvalidParameter
+from .errors import ConvergenceError, InvalidParameter, Norms
 from .law import FORCES
 from .model import Model, require_model
 from .places import FREE
@@ -64,7 +64,7 @@ class Answer:
     status: Status
     message: str
     bodies: Mapping[str, Array]
-    history: tuple[tuple[float, ...], ...]
+    history: Norms
     estimate: "ErrorEstimate | None" = None
 
     def __post_init__(self) -> None:
@@ -194,7 +194,7 @@ class StaticSolution(Answer):
     driven: str | None
     led: bool
     counters: Mapping[str, int]
-    history: tuple[tuple[float, ...], ...]
+    history: Norms
     seconds: Mapping[str, float]
     estimate: "ErrorEstimate | None" = None
 

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from . import read
 from .arrays import Array
 from .control import require_balance, spans
 from .effects import WAYS, Prescribed
-from .errors import choice, count, finite, several
 from .law import FORCES
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
@@ -57,7 +57,7 @@ def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options:
     """
     require_model(pivot)
     pivot.body_index(None)
-    return solve_mechanism(pivot, rotation=several("rotation", rotation, "rad"), **options)
+    return solve_mechanism(pivot, rotation=read.several("rotation", rotation, "rad"), **options)
 
 
 def solve_mechanism(
@@ -127,7 +127,7 @@ def solve_mechanism(
     [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_model(mechanism)
-    ends = None if rotation is None else several("rotation", rotation, "rad")
+    ends = None if rotation is None else read.several("rotation", rotation, "rad")
 
     def solve(model: Model) -> StaticSolution:
         return _solved(model, body, ends, increments, progress, order=order)
@@ -141,11 +141,7 @@ def solve_mechanism(
 
 
 def settled_state(
-    model: Model,
-    rotation: float | None,
-    body: str | None = None,
-    increments: int = 20,
-    starts: bool = False,
+    model: Model, rotation: float | None, body: str | None, increments: int, starts: bool = False
 ) -> tuple[Array, str]:
     """Return the coordinates (size,) in equilibrium at a driven rotation [rad], and a remark on the path.
 
@@ -153,10 +149,9 @@ def settled_state(
     histories begin; then rigid motions that nothing resists are held until then, whatever it takes. Errors as
     above.
     """
-    structure, led = structure_of(model), model.effects.every(Prescribed)
-    load = structure.loads.factors(0.0 if starts else None)
-    ends = None if rotation is None else [finite("rotation", rotation, "rad")]
-    if not rotation and load is None and not _moving(led) and not structure.constant_words:
+    structure, moved = structure_of(model), any(any(led.ends) for led in model.effects.every(Prescribed))
+    ends = None if rotation is None else [read.finite("rotation", rotation, "rad")]
+    if not rotation and structure.loads.factors() is None and not moved and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
     solution = _solved(model, body, ends, increments, None, starts=starts).checked()
     return solution.states[-1], _passed(solution)
@@ -185,25 +180,17 @@ def _solved(
     starts: bool = False,
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
-    steps, structure = count("increments", increments), structure_of(model)
-    led = model.effects.every(Prescribed)
-    driven = rotations is not None or any(each.body is None for each in led)
+    steps, structure = read.count("increments", increments), structure_of(model)
+    driven = rotations is not None or any(each.body is None for each in model.effects.every(Prescribed))
     which = model.body_index(body) if driven or body is not None else None
-    acting = structure.loads.factors(0.0 if starts else None)
-    first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
-    first = first and acting is not None and not _moving(led)  # a body that is led goes where both lead it
-    controls = spans(structure, which, rotations, acting, first=first, starts=starts)
+    first = read.choice("order", order, ORDERS) == LOADS_FIRST
+    controls = spans(structure, which, rotations, first=first, starts=starts)
     path = follow(controls, steps, progress)
     for state in () if starts else reversed(path.states):  # the load in full is named
-        require_balance(structure, path.control.props, state.residual, acting)
+        require_balance(path.control, state.residual)
     shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
     driven_body = None if which is None else model.body_names[which]
     return _packed(path, np.array([0.0, *shares]), driven_body, rotations is not None)
-
-
-def _moving(led: Sequence[Prescribed]) -> bool:
-    """Return whether any of these is led away from rest."""
-    return any(any(each.ends) for each in led)
 
 
 def _packed(path: Path, shares: Array, driven: str | None, led: bool) -> StaticSolution:
@@ -212,11 +199,7 @@ def _packed(path: Path, shares: Array, driven: str | None, led: bool) -> StaticS
     model, here = structure.model, [structure.evaluate(state.y, asked=FORCES) for state in states]
     y = np.array([state.y for state in states])
     fields = strip_fields(model, y, np.array([at.ends for at in here]))
-    held = [
-        (k, at - structure.first_body)
-        for k, at in enumerate(path.control.held)
-        if at not in path.control.props
-    ]
+    held = path.control.held[: len(path.control.held) - len(path.control.props)] - structure.first_body
     answers: dict[str, Any] = {
         name: np.array([getattr(state, name) for state in states])
         for name in ("torque", "stiffness", "inertia", "work")
@@ -229,8 +212,8 @@ def _packed(path: Path, shares: Array, driven: str | None, led: bool) -> StaticS
         bodies={name: fields.bodies[:, k] for k, name in enumerate(model.body_names)},
         **answers,
         **dict(zip(ENERGIES, np.array([(*at.strain, at.spring, at.gravity) for at in here]).T, strict=False)),
-        prescribed=tuple((model.body_names[at // 3], WAYS[at % 3]) for _, at in held),
-        reactions=np.array([state.drive for state in states])[:, [k for k, _ in held]],
+        prescribed=tuple((model.body_names[at // 3], WAYS[at % 3]) for at in held),
+        reactions=np.array([state.drive for state in states])[:, : len(held)],
         tips=fields.tips(model),
         clamp_reactions=fields.reactions,
         largest_stress=fields.outer_stress(model).max(axis=(1, 2)),

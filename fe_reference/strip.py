@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from . import read
 from .arrays import Array
-from .errors import Checked, InvalidParameter, Pair, choice, finite, pair, positive, within
+from .errors import InvalidParameter
 
 #: How an end of a strip is held on what it is on.
 JOINTS = ("clamp", "hinge")
@@ -21,7 +22,7 @@ ROUNDING = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class StripDesign(Checked):
+class StripDesign(read.Checked):
     """A strip: its axis at rest, what its ends are on, and a linear elastic, homogeneous beam section.
 
     Parameters
@@ -69,19 +70,19 @@ class StripDesign(Checked):
     """
 
     name: str
-    start: Annotated[Pair | Sequence[float], pair, "m"]
-    end: Annotated[Pair | Sequence[float], pair, "m"]
+    start: Annotated[read.Pair | Sequence[float], read.pair, "m"]
+    end: Annotated[read.Pair | Sequence[float], read.pair, "m"]
     root: str | None = FIXED
     tip: str | None
-    root_joint: Annotated[str, choice, JOINTS] = JOINTS[0]
-    tip_joint: Annotated[str, choice, JOINTS] = JOINTS[0]
-    rise: Annotated[float, finite, "m"] = 0.0
-    area: Annotated[float, positive, "m^2"] = NOT_GIVEN
-    second_moment_of_area: Annotated[float, positive, "m^4"] = NOT_GIVEN
-    youngs_modulus: Annotated[float, positive, "Pa"]
-    poisson_ratio: Annotated[float, within, -1.0, 0.5, "1"]
-    density: Annotated[float, positive, "kg/m^3"]
-    shear_factor: Annotated[float, positive, "1"] = 5.0 / 6.0
+    root_joint: Annotated[str, read.choice, JOINTS] = JOINTS[0]
+    tip_joint: Annotated[str, read.choice, JOINTS] = JOINTS[0]
+    rise: Annotated[float, read.finite, "m"] = 0.0
+    area: Annotated[float, read.positive, "m^2"] = NOT_GIVEN
+    second_moment_of_area: Annotated[float, read.positive, "m^4"] = NOT_GIVEN
+    youngs_modulus: Annotated[float, read.positive, "Pa"]
+    poisson_ratio: Annotated[float, read.within, -1.0, 0.5, "1"]
+    density: Annotated[float, read.positive, "kg/m^3"]
+    shear_factor: Annotated[float, read.positive, "1"] = 5.0 / 6.0
     width: float | None = None
     thickness: float | None = None
     width_end: float | None = None
@@ -104,14 +105,14 @@ class StripDesign(Checked):
             if missing:
                 raise InvalidParameter(missing[0], "nothing", "it, or width and thickness of a rectangle [m]")
             return
-        b, t = (positive(name, getattr(self, name), "m") for name in ("width", "thickness"))
+        b, t = (read.positive(name, getattr(self, name), "m") for name in ("width", "thickness"))
         for name, side in zip(("width_end", "thickness_end"), ends, strict=True):
             if side is not None:
-                positive(name, side, "m")
+                read.positive(name, side, "m")
         for name, made, power in zip(names, (b * t, b * t**3 / 12.0), (2, 4), strict=True):
             if name in missing:
                 object.__setattr__(self, name, made)
-            elif abs(positive(name, getattr(self, name), f"m^{power}") - made) > ROUNDING * made:
+            elif abs(read.positive(name, getattr(self, name), f"m^{power}") - made) > ROUNDING * made:
                 expected = f"{made:.6g}, that of width and thickness [m^{power}]"
                 raise InvalidParameter(name, getattr(self, name), expected)
 

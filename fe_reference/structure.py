@@ -87,17 +87,12 @@ class Structure:
         #: what changes of the coordinates are multiplied with to count in strip lengths and rad
         self.measure = np.where(self.axis == 2, 1.0, 1.0 / self.length)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
-        self.given = (
-            self.shear,
-            self.elements.table(model.effects.find(PreStrain) or PreStrain()),
-            first,
-            CURL_TABLE,
-        )
-        self.links = links_of(model, self.points, soft)
-        self.loads = Loads.of(model, self.points)
+        self.given = self.shear, self.elements.table(), first, CURL_TABLE
         damping, drag = model.effects.find(StripDamping), model.effects.find(StripDrag)
         #: relaxation time of the strips [s], and rate of their drag [1/s]
         self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
+        self.links = links_of(model, self.points, soft, self.relaxation)
+        self.loads = Loads.of(model, self.points)
         dampers = self.relaxation, self.drag * self.nodal_masses() if self.drag else np.zeros(0)
         self.damped = bool(self.relaxation or self.drag or self.links[4].any())
         self.tables = (self.given, self.carried, self._weight(), self.links, self.loads.pulls, dampers)
@@ -320,6 +315,7 @@ class Elements:
         strips their compliances are the means over the element: end force and end moment lengthen and turn
         it exactly; all else errs by the second order of its length.
         linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,), means over the element.
+        natural: strain [1] and curvature [1/m], (2, E).
         plate (E, 2 + 2 TERMS): nu^2 of sections that do not curl freely, else 0; the reach [m] of anticlastic
         bending; the coefficients of what clamps leave of the curl at two points, as in `law`.
     """
@@ -331,6 +327,7 @@ class Elements:
     shear_rigidity: Array
     linear_density: Array
     rotary_density: Array
+    natural: Array
     plate: Array
 
     @classmethod
@@ -342,18 +339,19 @@ class Elements:
         if any(strip.tapered for strip in model.strips):
             for name, growth in zip(rigid, _tapers(model), strict=True):
                 own[name] = own[name] * growth
+        natural = model.effects.find(PreStrain) or PreStrain()
         return cls(
             chord=chord,
             length=np.hypot(*chord),
+            natural=np.tile([[natural.strain], [natural.curvature]], chord.shape[1]),
             plate=np.vstack([_plate(model, k) for k in range(len(model.strips))]),
             **own,
         )
 
-    def table(self, natural: PreStrain) -> Array:
+    def table(self) -> Array:
         """Return the rows of `law` (E, 10 + 2 TERMS), in SI units."""
-        own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
         rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
-        known = np.transpose([*self.chord, self.length, *rigidities, *own])
+        known = np.transpose([*self.chord, self.length, *rigidities, *self.natural])
         flat = self.flexural_rigidity[:, None] / (1.0 - self.plate[:, :1])
         return np.hstack([known, flat, self.plate[:, 1:]])
 

@@ -32,12 +32,6 @@ def _ten(exponent: int) -> str:
     return f"10{str(exponent).translate(_RAISED)}"
 
 
-def power(value: Any) -> str:
-    """Return a small number as mantissa and power of ten."""
-    mantissa, _, exponent = f"{float(value):.1e}".partition("e")
-    return f"{mantissa}{SPACE}×{SPACE}{_ten(int(exponent))}".replace("-", MINUS)
-
-
 def decade(value: Any) -> str:
     """Return a power of ten, or a number of one digit times one."""
     exponent = round(math.log10(float(value)))
@@ -49,7 +43,7 @@ def decade(value: Any) -> str:
 def percent(value: Any) -> str:
     """Return a ratio in percent with two digits, from a hundred on whole; below 0.01 % as a power of ten."""
     if 0.0 < abs(float(value)) < 1e-4:
-        return power(value)
+        return significant(value)
     share = 100.0 * float(value)
     return f"{significant(share, max(2, len(str(int(abs(share))))))}{SPACE}%"
 
@@ -61,7 +55,7 @@ def signed_percent(value: Any) -> str:
 
 def times(value: Any) -> str:
     """Return a ratio as a factor."""
-    return f"{significant(value)}{SPACE}×" if float(value) < 100.0 else f"{float(f'{value:.2g}'):.0f}{SPACE}×"
+    return f"{significant(value)}{SPACE}×"
 
 
 def count(value: Any) -> str:

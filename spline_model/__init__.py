@@ -39,34 +39,26 @@ if TYPE_CHECKING:
     from spline_model.statics import solve_mechanism as solve_mechanism
     from spline_model.statics import solve_statics as solve_statics
 
-_HOMES = {
-    "BodyDesign": "design",
-    "ConvergenceError": "errors",
-    "DEFAULT_EFFECTS": "effects.registry",
-    "DrivenDisplacement": "effects.boundary",
-    "DrivenRotation": "effects.boundary",
-    "HeldPivot": "held",
-    "InvalidParameter": "errors",
-    "Mechanism": "mechanism",
-    "REGISTRY": "effects.registry",
-    "Status": "solution",
-    "StripDesign": "design",
-    "compliant_mechanism": "mechanism",
-    "cross_axis_pivot": "pivot",
-    "motion_penalty_stiffness": "discretisation",
-    "natural_frequencies": "modes",
-    "plate_factors": "effects.plate",
-    "sensitivities": "sensitivity",
-    "solve_impulses": "sequential_impulse",
-    "solve_many": "batch",
-    "solve_mechanism": "statics",
-    "solve_motion": "dynamics",
-    "solve_release": "dynamics",
-    "solve_statics": "statics",
-    "strip_fields": "section_forces",
+_NAMES = {
+    "batch": ("solve_many",),
+    "design": ("BodyDesign", "StripDesign"),
+    "discretisation": ("motion_penalty_stiffness",),
+    "dynamics": ("solve_motion", "solve_release"),
+    "effects.boundary": ("DrivenDisplacement", "DrivenRotation"),
+    "effects.plate": ("plate_factors",),
+    "effects.registry": ("DEFAULT_EFFECTS", "REGISTRY"),
+    "errors": ("ConvergenceError", "InvalidParameter"),
+    "held": ("HeldPivot",),
+    "mechanism": ("Mechanism", "compliant_mechanism"),
+    "modes": ("natural_frequencies",),
+    "pivot": ("cross_axis_pivot",),
+    "section_forces": ("strip_fields",),
+    "sensitivity": ("sensitivities",),
+    "sequential_impulse": ("solve_impulses",),
+    "solution": ("Status",),
+    "statics": ("solve_mechanism", "solve_statics"),
 }
-
-
+_HOMES = {name: home for home, names in _NAMES.items() for name in names}
 __all__ = list(_HOMES)
 
 

@@ -179,17 +179,15 @@ def search(
     grid: Discretisation,
     accuracy: float,
     attempt: Callable[[Grid, Grid], tuple[float, Found] | None],
-    most_segments: int | None = None,
     **more: Any,
 ) -> Search[Found]:
     """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy`` [1].
 
     attempt: solves with two discretisations and returns the estimated error [1] of the first, and its answer,
-    or None if one of them has no answer; most_segments: largest number of segments of a strip; more: of a
-    ``Search``. Returns the finished search, whose ``found`` is the answer with the least estimated error.
+    or None if one of them has no answer; more: of a ``Search``. Returns the finished search, whose ``found``
+    is the answer with the least estimated error.
     """
-    most = MOST_SEGMENTS if most_segments is None else most_segments
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most, **more)
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=MOST_SEGMENTS, **more)
     while not outcome.ended:
         tried = attempt(outcome.at, finer(*outcome.at))
         outcome.judge(*((None,) if tried is None else tried))
@@ -234,17 +232,19 @@ def _solve_accurately(
     outcome = search(design.discretisation, accuracy, attempt, stuck=stuck)
     if outcome.found is None:
         return confirmed(solved, outcome.trials[-1], searched=True)
-    answer, errors = outcome.found
+    answer, of_refinement = outcome.found
     if not answer.settled:
         return answer
     segments, points = outcome.best
-    message, of_refinement = outcome.message, dict(errors)
+    message, errors = outcome.message, of_refinement
     if design.root_length:
         halves = solved((2 * segments, max(FIRST, points // 2 + 2)))
-        errors |= _with_roots(design, errors, answer, halves)
+        if ends_alike(answer, halves):  # segments of half the length take the part 1 / OF_ROOTS of the error
+            apart = distances(design, answer, halves)
+            errors = {name: float(np.fmax(error, OF_ROOTS * apart[name])) for name, error in errors.items()}
         message = message or ROOTS.format(accuracy, largest(errors.values()))
     estimate = ErrorEstimate(
-        accuracy=accuracy, **errors, segments=segments, control_points=points, trials=outcome.tried
+        accuracy=accuracy, errors=errors, segments=segments, control_points=points, trials=outcome.tried
     )
     judged = errors
     if least is not None:
@@ -260,13 +260,12 @@ def _solve_accurately(
 def _stuck(solved: Outcome, way: float, trials: tuple[Grid, ...]) -> bool:
     """Whether the last doubling of the segments brought no path much farther, and those that are left would
     not bring one to its end at that pace."""
-    segments, reached = trials[-1][0], dict.fromkeys((segments for segments, _ in trials), 0.0)
-    for trial in trials:
-        for grid in (trial, finer(*trial)):
-            reached[grid[0]] = max(reached[grid[0]], _reach(solved(grid)))
-    if segments // 2 not in reached:
+    segments = trials[-1][0]
+    solved_ones = [(grid, _reach(solved(grid))) for trial in trials for grid in (trial, finer(*trial))]
+    earlier, last = ([far for grid, far in solved_ones if grid[0] == k] for k in (segments // 2, segments))
+    if not earlier:
         return False
-    before, here = reached[segments // 2], reached[segments]
+    before, here = max(earlier), max(last)
     doublings = math.log2(MOST_SEGMENTS / segments)
     return here - before < min(FARTHER * before, (way - here) / doublings)
 
@@ -276,19 +275,6 @@ def _reach(path: StaticSolution) -> float:
     driven rotation [rad]."""
     rotation = path.rotation if path.driven else np.zeros(1)
     return path.grown + float(np.abs(np.diff(path.load_factor)).sum() + np.abs(np.diff(rotation)).sum())
-
-
-def _with_roots(
-    design: Design, errors: dict[str, float], answer: StaticSolution, halves: StaticSolution
-) -> dict[str, float]:
-    """The errors of an answer, with those of roots whose compliance is spread along a segment.
-
-    More control points do not mend these, and segments of half the length take the part 1 / OF_ROOTS of it.
-    """
-    if not ends_alike(answer, halves):
-        return errors
-    apart = distances(design, answer, halves)
-    return {name: float(np.fmax(error, OF_ROOTS * apart[name])) for name, error in errors.items()}
 
 
 def _attempt(

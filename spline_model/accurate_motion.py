@@ -106,8 +106,8 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
     if start.motion.system.scene is not scene:
         start = Start(set_in_motion(compile_scene(scene)), start.known, start.v)
     system, mass = start.motion.system, start.motion.system.mass
-    lowest = linear_modes(system, system.rest, mass)[0][0]
-    squares, shapes, slide = linear_modes(system, start.z, mass)
+    lowest = linear_modes(system, system.rest)[0][0]
+    squares, shapes, slide = linear_modes(system, start.z)
     push, speed = shapes.T @ mass @ start.acceleration, shapes.T @ mass @ start.v
     stored = np.divide(push**2, np.abs(squares), out=np.zeros_like(push), where=squares != 0.0)
     energy = stored + speed**2
@@ -199,7 +199,7 @@ class Task:
     def frequency(self) -> float:
         """Slowest circular frequency at rest [rad/s], 0 for none."""
         system = compile_scene(self.mechanism.released())
-        squares = linear_modes(system, system.rest, set_in_motion(system).system.mass)[0]
+        squares = linear_modes(system, system.rest)[0]
         return math.sqrt(max(float(squares[0]), 0.0))
 
     def run(self, n: int, integrator: str, step: float, records: int) -> Trajectory:

@@ -159,17 +159,14 @@ def singular(basis: Bezier, points: int, axial: LegendreModes | None, slides: bo
     and every axial force has to do work on some strain, or it is not determined.
     """
     u, weight = basis.gauss_rule(points)
-    bends = np.sqrt(weight)[:, None] * basis.evaluate(u, 2)
-    shapes = basis.control_points - 2
-    if _rank(bends) < shapes:
-        seen = f"{len(u)} Gauss points see {_rank(bends)} of {shapes} shapes of bending"
-        return f"{seen}: use more gauss_points"
-    strains = np.sqrt(weight)[:, None] * basis.evaluate(u, 1)
+    strains, bends = (np.sqrt(weight)[:, None] * basis.evaluate(u, order) for order in (1, 2))
     shapes = basis.control_points - 1
+    seen = [("bending", bends, shapes - 1)] + [("stretching", strains, shapes)] * (axial is None)
+    for what, matrix, count in seen:
+        if _rank(matrix) < count:
+            told = f"{len(u)} Gauss points see {_rank(matrix)} of {count} shapes of {what}"
+            return f"{told}: use more gauss_points"
     if axial is None:
-        if _rank(strains) < shapes:
-            seen = f"{len(u)} Gauss points see {_rank(strains)} of {shapes} shapes of stretching"
-            return f"{seen}: use more gauss_points"
         return ""
     modes: list[AxialModes] = [axial]
     if slides and axial.count < shapes:

@@ -18,12 +18,11 @@ from spline_model.parameters import Given
 from spline_model.reduced.arrays import Answer, Route
 from spline_model.reduced.many import Share, Stations, follow_all
 from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
-from spline_model.reduced.numbers import Designs
+from spline_model.reduced.numbers import Designs, Numbers
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 from spline_model.solution import named, remark
 from spline_model.statics import has_loads, steady
-from spline_model.strip.element import Local
 
 Array = NDArray[np.float64]
 
@@ -146,31 +145,50 @@ class Many:
                 alike = rows[slender_ones == slender]
                 if alike.size:
                     kind = model.as_slender(slender=slender)
-                    share = (self.workers, kind, place, alike, *self._arrays(kind, alike), batch)
+                    solved = partial(_solve_share, kind, self._share(kind, place, alike, batch))
                     together = map if self.workers == 1 else pool.map
-                    list(together(partial(_solve_share, *share), range(self.workers)))
+                    list(together(solved, range(self.workers)))
 
-    def _arrays(self, model: Reduced, rows: NDArray[np.int64]) -> tuple[Designs, Stations]:
-        """What kernels know of some of the designs, and of the stations of their strains."""
+    def _share(self, model: Reduced, place: int, rows: NDArray[np.int64], batch: Batch) -> Share:
+        """What kernels know of the designs of the numbers ``rows``, as one thread would solve all of them."""
         given, base = self.given.rows(rows), Given.of(self.base.design)
         length = given.span.max(axis=1)
         units = length, given.rigidity.max(axis=1) / length
         numbers = given.numbers(base, model.system.scene)
-        designs = model.designs(numbers, *units)
+        designs, strips = model.designs(numbers, *units), model.strips
         designs.target[:, model.bodies.driven] = self.turned[rows]
-        if not self.depth.size:
-            return designs, Stations.none(model.arrays())
+        outer = len(model.bodies.load) - designs.force.shape[2]
+        stiff = 1.0 / designs.compliance[..., strips.coupled :]
+        none = np.zeros(len(model.bodies.held))
+        grows = np.linspace(0.0, 1.0, 2 * model.system.is_preloaded)
+        force = np.pad(designs.force, ((0, 0), (0, 0), (0, outer)))
+        return Share(
+            rows=rows,
+            begin=0,
+            stride=self.workers,
+            designs=designs,
+            force=force,
+            gain=np.concatenate((strips.gain[None, :, : strips.coupled].repeat(len(rows), 0), stiff), axis=2),
+            preload=Preload.of_designs(model, designs, force[:, 1], numbers.points),
+            stations=self._stations(rows, model, given, numbers, designs),
+            growing=Route(factor=grows, origin=none, target=0.0 * none, growth=0.0, swells=True),
+            place=place,
+            results=tuple(getattr(batch, name) for name in SOLVED),
+        )
+
+    def _stations(
+        self, rows: NDArray[np.int64], model: Reduced, given: Given, numbers: Numbers, designs: Designs
+    ) -> Stations:
+        """Where strains are computed, if they are asked for."""
         at = model.at_stations(STATIONS)
+        if not self.depth.size:
+            return Stations(np.zeros((0, 0, 0, 0)), np.zeros((0, 0, 0)), at.shape, at.local())
+        length, energy = designs.length, designs.energy
         area, _, modulus = np.moveaxis(given.section, -1, 0)
         bend = 0.5 * (self.depth[rows] * length)[:, None] / given.rigidity
         fibre = np.stack((1.0 / (area * modulus * length[:, None]), bend), axis=-1)
-        return designs, Stations(
-            along=at.designs(numbers, *units, gauss=model.shape).along,
-            fibre=fibre * designs.energy[:, None, None],
-            strips=at.strips,
-            shape=at.shape,
-            local=at.local(),
-        )
+        along = at.designs(numbers, length, energy, gauss=model.shape).along
+        return Stations(along, fibre * energy[:, None, None], at.shape, at.local())
 
     def empty(self, control_points: int, accuracy: float | None) -> Batch:
         """Return a batch of D designs of which none is solved yet; accuracy: what it is asked for [1]."""
@@ -209,42 +227,16 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     return model
 
 
-def _solve_share(
-    workers: int,
-    model: Reduced,
-    place: int,
-    rows: NDArray[np.int64],
-    designs: Designs,
-    stations: Stations,
-    batch: Batch,
-    worker: int,
-) -> None:
-    """Solve what one thread does of the designs of one kind of element, with working arrays of its own.
-
-    rows: theirs in the batch.
-    """
-    strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
-    own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
-    kept = {k: getattr(bodies, k).copy() for k in ("rest", "load", "weight", "springs")}
-    bodies = bodies._replace(**kept, frames=bodies.frames._replace(lever=bodies.frames.lever.copy()))
-    copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
-    factors, held = np.linspace(0.0, 1.0, batch.torque.shape[1]), len(bodies.held)
-    route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)
-    grows = factors[[0, -1]] if model.system.is_preloaded else factors[:0]
-    own_strips = strips._replace(**own)
-    at_stations = own_strips._replace(along=stations.strips.along.copy())
-    local = Local.of(at_stations, len(model.shape.order))
-    share = Share(
-        rows=rows,
+def _solve_share(model: Reduced, share: Share, worker: int) -> None:
+    """Solve what one thread does of the designs of one kind of element, with working arrays of its own."""
+    held, states = len(model.bodies.held), share.results[SOLVED.index("torque")].shape[1]
+    (origin, target), mine = np.zeros((2, held)), Preload.of(model)
+    route = Route(np.linspace(0.0, 1.0, states), origin, target, growth=1.0, passes=True)
+    own = share._replace(
         begin=worker,
-        stride=workers,
-        designs=designs,
-        stations=stations._replace(strips=at_stations, local=local),
-        growing=route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
-        place=place,
-        results=tuple(getattr(batch, name) for name in SOLVED),
+        preload=share.preload._replace(change=mine.change, push=mine.push, out=mine.out),
+        stations=share.stations._replace(local=model.at_stations(STATIONS).local()),
+        growing=share.growing._replace(origin=origin),
     )
-    arrays = model.arrays()._replace(bodies=bodies, strips=own_strips)
-    answer = Answer.empty(len(factors), model.size, held)
-    # the moment defect refuses
-    follow_all(share, route, True, preload._replace(**copies), arrays, TOLERANCE, answer)
+    answer = Answer.empty(states, model.size, held)
+    follow_all(own, route, True, model.arrays(), TOLERANCE, answer)  # the moment defect refuses

@@ -21,6 +21,7 @@ from spline_model.effects import (
     MixedStretching,
     SectionRotaryInertia,
     Stretching,
+    StripDamping,
     StripDrag,
     StripInertia,
 )
@@ -30,7 +31,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.followers import NO_FOLLOWERS, Followers
 from spline_model.frames import Frames
 from spline_model.layout import Layout
-from spline_model.scene import Scene
+from spline_model.scene import Scene, Strip
 from spline_model.tables import DriveTable, LoadTable, between_bodies, frames_of, weight
 
 Array = NDArray[np.float64]
@@ -149,14 +150,14 @@ class System:
     @cached_property
     def mass(self) -> Array:
         """M in the coordinates q (Q, Q) [kg, kg m^2]; zero where no inertia acts."""
-        scene = self.scene
-        mass = np.zeros((self.layout.coordinate_count, self.layout.coordinate_count))
-        for strip in scene.of(StripInertia):
-            self._add(mass, strip.strip, strip.linear_density * scene.strip(strip.strip).products())
-        for rotary in scene.of(SectionRotaryInertia):
-            self._add(mass, rotary.strip, rotary.rotary_density * scene.strip(rotary.strip).slope_products())
-        for body in scene.of(BodyInertia):
-            at = self.layout.body(body.body)
+        scene, mass = self.scene, np.zeros((self.layout.coordinate_count,) * 2)
+        for strip in scene.strips:
+            if scene.of(StripInertia):
+                self._add(mass, strip, strip.linear_density * strip.products())
+            if scene.of(SectionRotaryInertia):
+                self._add(mass, strip, strip.rotary_density * strip.slope_products())
+        for body in scene.own_bodies if scene.of(BodyInertia) else ():
+            at = self.layout.body(body.name)
             mass[at, at] += np.diag((body.mass, body.mass, body.moment_of_inertia))
         return mass
 
@@ -167,21 +168,26 @@ class System:
         between = between_bodies(self.scene, "damping")
         if not strips and not bodies and not between.size:
             return np.zeros((0, 0))
-        drag = np.zeros((self.layout.coordinate_count, self.layout.coordinate_count))
-        for each in strips:
-            self._add(
-                drag, each.strip, each.rate * each.linear_density * self.scene.strip(each.strip).products()
-            )
-        for body in bodies:
-            at = self.layout.body(body.body)
-            drag[at, at] += np.diag((body.translation, body.translation, body.rotation))
+        drag = np.zeros((self.layout.coordinate_count,) * 2)
+        for effect in strips:
+            for strip in self.scene.strips:
+                self._add(drag, strip, effect.rate * strip.linear_density * strip.products())
+        for damper in bodies:
+            for body in self.scene.own_bodies:
+                at = self.layout.body(body.name)
+                drag[at, at] += np.diag((damper.translation, damper.translation, damper.rotation))
         if between.size:
             drag[self.layout.poses, self.layout.poses] += between
         return drag
 
-    def _add(self, matrix: Array, strip: str, block: Array) -> None:
+    @property
+    def relaxation_time(self) -> float:
+        """Of all strips [s]."""
+        return sum(damping.relaxation_time for damping in self.scene.of(StripDamping))
+
+    def _add(self, matrix: Array, strip: Strip, block: Array) -> None:
         """Add a matrix of a strip's control points (n, n), the same for x and y."""
-        at = self.layout.strip(strip)
+        at = self.layout.strip(strip.name)
         matrix[at, at] += np.kron(block, np.eye(2))
 
     @cached_property

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,11 +73,10 @@ def spread(one: Sequence[CriticalPoint], other: Sequence[CriticalPoint]) -> floa
 
 def ends_alike(one: StaticSolution, other: StaticSolution) -> bool:
     """Whether two paths met the same critical points and ended at the same one, or both reached their end."""
-    if spread(one.critical_points, other.critical_points) > SAME_PLACE or one.settled is not other.settled:
-        return False
-    if not (one.settled or one.critical_points):
-        return False
-    return one.status is other.status and at_limit(one) == at_limit(other)
+    met_alike = spread(one.critical_points, other.critical_points) <= SAME_PLACE
+    stopped_alike = one.status is other.status and at_limit(one) == at_limit(other)
+    somewhere = one.settled or bool(one.critical_points)
+    return met_alike and stopped_alike and somewhere and one.settled is other.settled
 
 
 def at_limit(path: StaticSolution) -> bool:
@@ -99,18 +99,16 @@ def confirmed(outcome: Outcome, grid: Grid, *, searched: bool = False) -> Static
         apart = spread(answer.critical_points, better.critical_points)
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
-    return _cut(answer, better, grid, remedy(grid, searched))
+    advice = ("" if searched else "leave the number open, or ") + f"take segments = {2 * grid[0]}"
+    return _cut(answer, better, grid, advice)
 
 
 def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str) -> StaticSolution:
     """The part of a path that is resolved, and what is not, with an advice."""
     more = finer(*grid)
     kept = _agreeing(answer, better)
-    known = 0
-    while spread(answer.critical_points[: known + 1], better.critical_points[: known + 1]) <= SAME_PLACE:
-        known += 1
-        if known >= len(answer.critical_points):
-            break
+    both = zip(answer.critical_points, better.critical_points, strict=False)
+    known = len(list(takewhile(lambda pair: spread(pair[:1], pair[1:]) <= SAME_PLACE, both)))
     doubt, other = answer.critical_points[known:], better.critical_points[known:]
     if doubt and not at_limit(answer):
         there = _place(other[0].load_factor, other[0].rotation) if other else "no state"
@@ -127,11 +125,6 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str
         message=message,
         critical_points=answer.critical_points[:known],
     )
-
-
-def remedy(grid: Grid, searched: bool = False) -> str:
-    """Return the advice for a discretisation and a finer one with different critical points or ends."""
-    return ("" if searched else "leave the number open, or ") + f"take segments = {2 * grid[0]}"
 
 
 def _place(load_factor: float, rotation: float) -> str:

@@ -117,20 +117,17 @@ class Discretisation:
         return cls(**values)
 
     def __post_init__(self) -> None:
-        if self.control_points is not None:
-            require_count("control_points", self.control_points, 4)
-        require_count("segments", self.segments, 1)
+        for name, lowest in (("control_points", 4), ("segments", 1), ("gauss_points", 1)):
+            if getattr(self, name) is not None:
+                require_count(name, getattr(self, name), lowest)
         for name in ("axial_modes", "gauss_points"):
-            if self.control_points is None and getattr(self, name) is not None:
-                raise InvalidParameter(
-                    name, getattr(self, name), "control_points beside it, which it goes with"
-                )
+            given = getattr(self, name)
+            if self.control_points is None and given is not None:
+                raise InvalidParameter(name, given, "control_points beside it, which it goes with")
         require_choice("measure", self.measure, MEASURES)
         require_choice("stretch", self.stretch, STRETCH_FORMS)
         if self.penalty_stiffness is not None:
             require_not_negative("penalty_stiffness", self.penalty_stiffness, "EI/L^2")
-        if self.gauss_points is not None:
-            require_count("gauss_points", self.gauss_points, 1)
         if self.measure != "material" and self.stretch != "consistent":
             only = f"consistent, the only form with measure = {self.measure}"
             raise InvalidParameter("stretch", self.stretch, only)

@@ -282,24 +282,19 @@ def checked(
     mechanism = mechanism.on(trajectory.segments, trajectory.control_points).in_motion()
     if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
         return trajectory
+    duration, body = float(trajectory.time[-1]), mechanism.design.body_named(body)
     task = Task(
-        mechanism=mechanism,
-        start=start,
-        body=mechanism.design.body_named(body),
-        drive=drive,
-        duration=float(trajectory.time[-1]),
-        solve=solve_motion,
+        mechanism=mechanism, start=start, body=body, drive=drive, duration=duration, solve=solve_motion
     )
     return with_companion(task, trajectory)
 
 
 def _way_to_start(path: StaticSolution) -> str:
     """A remark on the critical points that a path passes before a motion starts at its end."""
-    turns = [f" ({math.degrees(p.rotation):.3g} deg)" if p.rotation else "" for p in path.critical_points]
-    told = [
-        f"{point.kind} at load factor {point.load_factor:.3g}{turn if path.driven else ''}"
-        for point, turn in zip(path.critical_points, turns, strict=True)
-    ]
+    told = []
+    for point in path.critical_points:
+        turn = f" ({math.degrees(point.rotation):.3g} deg)" if path.driven and point.rotation else ""
+        told.append(f"{point.kind} at load factor {point.load_factor:.3g}{turn}")
     told += ["the start is unstable while it is held"] if path.inertia[-1] > 0 else []
     return f"the way to the start: {'; '.join(told)}" if told else ""
 

@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import AppliedForce
+from spline_model.effects import AppliedLoad
 from spline_model.effects.boundary import FOLLOWER
 from spline_model.scene import Scene
 from spline_model.tables import LoadTable
@@ -30,7 +30,7 @@ class Followers(NamedTuple):
     def of(cls, scene: Scene, loads: LoadTable) -> Self:
         """Return those of all loads of a scene that grow, and its steady ones, among its unknowns [N]."""
         own = loads.rows(loads.turns == FOLLOWER)
-        full = [each for each in scene.of(AppliedForce) if each.follower and each.steady]
+        full = [each for each in scene.of(AppliedLoad) if each.follower and each.steady]
         places = [*own.coordinate[::2], *(scene.layout.bodies[each.body] for each in full)]
         force = np.concatenate((own.value.reshape(-1, 2), np.reshape([each.force for each in full], (-1, 2))))
         grows = np.arange(len(places))[:, None] < len(own.value) // 2

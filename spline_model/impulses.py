@@ -144,6 +144,12 @@ class Problem(NamedTuple):
             tolerance=float(tolerance),
         )
 
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The number that each letter in the shapes of ``Space`` stands for."""
+        sizes = {"N": len(self.unit), "Q": len(self.mass), "R": len(self.rows), "W": WORK}
+        return sizes | {"M": len(self.rigidity), "2n": 2 * self.strips.curve.shape[2]}
+
 
 class Space(NamedTuple):
     """Arrays that a step fills.
@@ -185,12 +191,6 @@ class Moving(NamedTuple):
     begun: Array
     status: Array
     counters: Indices
-
-
-def sizes_of(problem: Problem) -> dict[str, int]:
-    """Return the number that each letter in the shapes of ``Space`` stands for."""
-    sizes = {"N": len(problem.unit), "Q": len(problem.mass), "R": len(problem.rows)}
-    return sizes | {"M": len(problem.rigidity), "W": WORK, "2n": 2 * problem.strips.curve.shape[2]}
 
 
 def loads_of(motion: Motion) -> Array:
@@ -259,8 +259,8 @@ def _fill(z, problem, space):
     return bent + axial, slowest
 
 
-@called()
-def _fill_free(z, problem, space):
+@kernel()
+def strain_energy(z, problem, space):
     """The same without any axial force or multiplier; returns the strain energy [J].
 
     ``space.strains`` are those that the axial forces see: these count by the forces that strains give.
@@ -272,12 +272,6 @@ def _fill_free(z, problem, space):
     for k in range(strains.size):
         strains[k] = space.gradient[count + k]
     return energy + 0.5 * _product(problem.rigidity, strains, strains)
-
-
-@kernel()
-def strain_energy(z, problem, space):
-    """Return the strain energy [J] at z (N,), the axial forces being those that the strains give."""
-    return _fill_free(z, problem, space)
 
 
 @called()
@@ -375,7 +369,7 @@ def _solve(a, x, count):
 
 
 @once()
-def printed_advance(moving, h, problem, space):
+def _printed_advance(moving, h, problem, space):
     """Advance by one step; False, with the state as it was, if it is unstable.
 
     ``moving.z`` is left with the axial forces of q0 and the constraint forces P / h.
@@ -385,7 +379,7 @@ def printed_advance(moving, h, problem, space):
     most = status[ENERGY] + abs(_fallen(z, moving.begun, problem)) + FROM_REST * problem.energy
     copy(v, moving.earlier[1])
     copy(z[:count], moving.earlier[0])
-    _fill_free(z, problem, space)
+    strain_energy(z, problem, space)
     _fill_drag(z, problem, space)
     for k in range(space.rates.size):
         space.rates[k] = _row_times(matrix, count + k, v)
@@ -463,7 +457,7 @@ def _apply_impulses(v, tolerance, problem, space):
 
 
 @once()
-def stable_advance(moving, duration, problem, space):
+def _stable_advance(moving, duration, problem, space):
     """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
     status, done, step = moving.status, 0.0, duration
     while duration - done > 1e-9 * duration:
@@ -618,3 +612,32 @@ def _add_inertia(v, span, lag, mass, space):
             push += mass[i, j] * (v[j] - space.drift[j]) / lag + space.drag[i, j] * v[j]
             space.matrix[i, j] += mass[i, j] * over + space.drag[i, j] / span
         space.gradient[i] += push
+
+
+@kernel()
+def store(moving, problem, space, record):
+    """Fill a record (W,) of the present state."""
+    size, count = moving.z.size, moving.v.size
+    copy(moving.z, record[:size])
+    copy(moving.v, record[size : size + count])
+    record[size + count] = strain_energy(moving.z, problem, space)
+    record[size + count + 1] = moving.status[LOST]
+
+
+@kernel()
+def advance(moving, h, begin, end, every, stable, problem, space, records):
+    """Take the steps ``begin`` ... ``end`` - 1 of length h [s].
+
+    Returns the number of the first step that was not taken; ``moving`` stands at its begin. records: filled
+    at the ends of steps whose number ``every`` divides.
+    """
+    for k in range(begin, end):
+        if stable:
+            done = _stable_advance(moving, h, problem, space)
+        else:
+            done = _printed_advance(moving, h, problem, space)
+        if not done:
+            return k
+        if (k + 1) % every == 0:
+            store(moving, problem, space, records[(k + 1) // every - begin // every - 1])
+    return end

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any, Literal, Self, Unpack
 
@@ -13,9 +13,8 @@ import numpy as np
 from spline_model.compile import System, compile_scene
 from spline_model.design import HINGE, LARGEST_OPENING, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, motion_penalty_stiffness
-from spline_model.effects import Clamp, Driven, DrivenRotation
+from spline_model.effects import AppliedLoad, Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import (
     DEFAULT_EFFECTS,
@@ -63,7 +62,7 @@ class Mechanism:
             bodies=self.design.bodies,
             effects=self.effects,
             parameters=self.parameters,
-            **(asdict(grid) | changes),
+            **({each.name: getattr(grid, each.name) for each in fields(grid)} | changes),
         )
         return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
@@ -108,9 +107,8 @@ class Mechanism:
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """Return the scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
-        scene = self.scene.with_effects(drive)
-        vars(scene)["structure"] = self.scene.structure.setdefault(("driven", drive.body), {})
-        return scene
+        shared = self.scene.structure.setdefault(("driven", drive.body), {})
+        return self.scene.with_effects(drive).sharing(shared)
 
     def system(self, rotation: float | None = None, body: str | None = None) -> System:
         """Return the system of the scene, with a body's ``rotation`` [rad] driven where one is given.
@@ -163,8 +161,7 @@ class Mechanism:
 
     def at_start(self) -> Self:
         """Return the mechanism with loads and drives at their values at the start of a motion."""
-        timed = Sized | Driven
-        effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
+        effects = (e.at(0.0) if isinstance(e, AppliedLoad | Driven) else e for e in self.scene.effects)
         return replace(self, scene=replace(self.scene, effects=tuple(effects)))
 
 
@@ -254,12 +251,14 @@ def compliant_mechanism(
                 control_points=piece.control_points(grid.spline),
                 of=whole.name,
                 taper=piece.taper,
+                linear_density=piece.linear_density,
+                rotary_density=piece.density * piece.second_moment_of_area,
             )
             for piece, whole, _ in design.pieces
         ),
         bodies=(
             *(
-                Body(name=body.name, centre=np.asarray(body.centre, dtype=float), joint=joint)
+                Body(**vars(body) | {"centre": np.asarray(body.centre, dtype=float), "joint": joint})
                 for joint, own in ((False, bodies), (True, design.joints))
                 for body in own
             ),
@@ -269,8 +268,7 @@ def compliant_mechanism(
     )
     if not given:
         joined = tuple((s.name, s.root, s.tip, s.root_joint, s.tip_joint) for s in strips)
-        shared = _structure(joined, tuple(body.name for body in bodies), names, grid)
-        vars(scene)["structure"] = shared
+        scene.sharing(_structure(joined, tuple(body.name for body in bodies), names, grid))
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
 
 

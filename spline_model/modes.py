@@ -21,7 +21,7 @@ from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.rigid import Unheld, props_of
 from spline_model.sections import STATIONS, curves
-from spline_model.solution import FrequencyEstimate
+from spline_model.solution import ErrorEstimate
 from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle, static_state
 
@@ -71,7 +71,7 @@ class Modes:
         Unknowns of the static state.
     segments, control_points : int
         Of a strip, and of each segment.
-    estimate : FrequencyEstimate or None
+    estimate : ErrorEstimate or None
         Of the error, if an accuracy was given.
     """
 
@@ -85,7 +85,7 @@ class Modes:
     state: Array
     segments: int
     control_points: int
-    estimate: FrequencyEstimate | None = None
+    estimate: ErrorEstimate | None = None
 
 
 def natural_frequencies(
@@ -188,9 +188,9 @@ def _accurate_modes(
     if strict and outcome.message:
         raise InvalidParameter("accuracy", accuracy, f"no less than {outcome.error:.2g}, which is reached")
     segments, points = outcome.best
-    estimate = FrequencyEstimate(
+    estimate = ErrorEstimate(
         accuracy=accuracy,
-        frequency=outcome.error,
+        errors={"frequency": outcome.error},
         segments=segments,
         control_points=points,
         trials=outcome.tried,
@@ -221,7 +221,7 @@ def _modes(
     except Unheld:  # under the loads in full: about the start of its motion
         about, starts = mechanism.at_start(), True
         z = static_state(about, rotation, increments, body, starts=True)[: layout.size]
-    values, vectors, share = linear_modes(system, z, system.mass)
+    values, vectors, share = linear_modes(system, z)
     if np.sum(values < 0.0) > 1:
         about = about.propped(rotation is not None, body)
         _require_possible(values, settle(about, rotation, increments, body, starts=starts))
@@ -253,7 +253,7 @@ def _require_possible(values: Array, path: StaticSolution) -> None:
         raise RoundOff("unstable modes", unstable, expected)
 
 
-def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:
+def linear_modes(system: System, z: Array) -> tuple[Array, Array, Array]:
     """Return squared circular frequencies (F,) [1/s^2], shapes in q (Q, F) and slide shares (F,) [1] of a
     state.
 
@@ -265,20 +265,17 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
     RoundOff
         Frequencies that are decided by round-off.
     """
-    if not np.any(mass):
+    if not system.mass.any():
         raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")
-    return _linear_modes(system, z.tobytes(), mass.tobytes())
+    return _linear_modes(system, z.tobytes())
 
 
 @lru_cache(maxsize=4)
-def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array, Array, Array]:
-    z, count = np.frombuffer(state).copy(), system.layout.coordinate_count
-    mass = np.frombuffer(inertias).reshape(count, count)
-    stiffness, slide, rows, by = _linear(require_reduced(system), z)
+def _linear_modes(system: System, state: bytes) -> tuple[Array, Array, Array]:
+    stiffness, slide, rows, by = _linear(require_reduced(system), np.frombuffer(state))
     norms = np.linalg.norm(rows, axis=1, keepdims=True)
     free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
-    inertia = by.T @ mass @ by
-    rigid = len(props_of(system.scene))
+    inertia, rigid = by.T @ system.mass @ by, len(props_of(system.scene))
     try:
         free = _without_massless(free, stiffness, inertia)
         values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
@@ -301,24 +298,19 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
 
     Axial forces that comply are eliminated; strips that cannot stretch are constraints.
     """
-    y, strips = from_unknowns(model, z), model.strips
+    y, compliance = from_unknowns(model, z), model.strips.compliance
     hessian = model.energy * whole_tangents(model, y[None], np.ones(1))[1][0]
-    axial = [np.arange(model.size)[model.places(s)[1]] for s in range(len(strips.compliance))]
-    free = np.delete(np.arange(model.size), np.concatenate([model.fixed, *axial]).astype(int))
-    stiffness, rows = hessian[np.ix_(free, free)], [hessian[:0, free]]
-    slide = np.zeros_like(stiffness)
-    for places, compliance in zip(axial, strips.compliance, strict=True):
-        for part, slides in ((slice(strips.split), False), (slice(strips.split, None), True)):
-            at = places[part]
-            coupling = hessian[np.ix_(at, free)]
-            if not compliance[part].any():
-                rows.append(coupling)
-                continue
-            share = coupling.T @ np.linalg.solve(-hessian[np.ix_(at, at)], coupling)
-            stiffness += share
-            if slides:
-                slide += share
-    return stiffness, slide, np.concatenate(rows), coordinates_by(model, y)[:, free]
+    places = np.arange(model.size)
+    axial = np.array([places[model.places(s)[1]] for s in range(len(compliance))], dtype=np.int64)
+    free = np.delete(places, np.append(axial, model.fixed).astype(int))
+    soft, slides = compliance > 0.0, np.arange(compliance.shape[1]) >= model.strips.split
+
+    def condensed(kept: NDArray[np.bool_]) -> Array:
+        coupling = hessian[np.ix_(axial[kept], free)]
+        return np.asarray(coupling.T / (model.energy * compliance[kept]) @ coupling)
+
+    stiffness, slide = hessian[np.ix_(free, free)] + condensed(soft), condensed(soft & slides)
+    return stiffness, slide, hessian[np.ix_(axial[~soft], free)], coordinates_by(model, y)[:, free]
 
 
 def _sorted_modes(stiffness: Array, mass: Array, rigid: int) -> tuple[Array, Array]:

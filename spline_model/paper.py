@@ -76,7 +76,7 @@ class Strips(NamedTuple):
         along, own = np.zeros((len(bends), len(u), DROP + TERMS)), np.zeros((len(bends), 4))
         compliance = np.zeros((len(bends), modes.shape[1], modes.shape[1]))
         stretched = {e.strip: e for e in scene.of(Stretching)}
-        damped = {e.strip: e.relaxation_time for e in scene.of(StripDamping)}
+        own[:, RELAXATION] = sum(damping.relaxation_time for damping in scene.of(StripDamping))
         for s, (bend, parts) in enumerate(zip(bends, mixed, strict=True)):
             (x1, x2), (y1, y2) = (curve @ scene.strip(bend.strip).control_points).T
             speed, at = np.hypot(x1, y1), along[s].T
@@ -88,11 +88,10 @@ class Strips(NamedTuple):
             if bend.strip in stretched:
                 own[s, STRETCHING] = stretched[bend.strip].axial_rigidity
                 own[s, STRAIN] = stretched[bend.strip].natural_strain
-            own[s, RELAXATION] = damped.get(bend.strip, 0.0)
             done = 0
-            for part_, value in zip(parts, values, strict=True):
-                own[s, STRAIN], block = part_.natural_strain, slice(done, done + part_.modes.count)
-                soft = weight * speed * part_.compliance_at(u)
+            for each, value in zip(parts, values, strict=True):
+                own[s, STRAIN], block = each.natural_strain, slice(done, done + each.modes.count)
+                soft = weight * speed * each.compliance_at(u)
                 compliance[s, block, block], done = value.T @ (soft[:, None] * value), block.stop
         return cls(
             first=np.array([layout.strips[bend.strip][0] for bend in bends], dtype=np.int64),
@@ -116,19 +115,23 @@ class Strips(NamedTuple):
         return self._replace(along=along, own=own)
 
     def derivatives(self, z: Array) -> Array:
-        """Return x', y', x'', y'' by u at the unknowns z (N,), shape (4, S, P) [m]."""
+        """Return x', y', x'', y'' by u at the unknowns z (..., N), shape (4, ..., S, P) [m]."""
         places = self.first[:, None] + np.arange(2 * self.curve.shape[2])
-        found = self.curve @ z[places].reshape(len(places), 1, -1, 2)
-        return found.transpose(2, 3, 0, 1).reshape(4, *found.shape[:2])
+        found = self.curve @ z[..., places].reshape(*z.shape[:-1], len(places), 1, -1, 2)
+        return np.stack([found[..., order, axis] for order in range(2) for axis in range(2)])
+
+    def strains(self, z: Array) -> Array:
+        """Return what the axial forces see at the unknowns z (..., N), in their order: (..., S K) [m]."""
+        x, y, _, _ = self.derivatives(z)
+        gaps = np.hypot(x, y) - (1.0 + self.own[:, STRAIN, None]) * self.along[..., SPEED]
+        return np.asarray((self.weight * gaps @ self.modes).reshape(*z.shape[:-1], -1))
 
     def moments(self, z: Array) -> Array:
         """Return bending moments (S, P) at the unknowns z (N,) [N m]."""
         x1, y1, x2, y2 = self.derivatives(z)
-        square = x1**2 + y1**2
-        along = np.moveaxis(self.along, 2, 0)
+        square, along, curl = x1**2 + y1**2, np.moveaxis(self.along, 2, 0), self.own[:, CURL, None]
         speed = along[SPEED] if MEASURES[self.measure] == "material" else np.sqrt(square)
         strain = (x1 * y2 - y1 * x2) / square / speed - along[CURVATURE]
-        curl = self.own[:, CURL, None]
         factor = curl_factors(strain, self.along[..., DROP:], curl)[1] if curl.any() else 1.0
         return np.asarray(along[RIGIDITY] * strain * factor)
 

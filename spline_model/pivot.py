@@ -12,7 +12,7 @@ import numpy as np
 from spline_model.design import NOT_GIVEN, BodyDesign, StripDesign
 from spline_model.discretisation import Described
 from spline_model.effects.registry import DEFAULT_EFFECTS, Parameters
-from spline_model.errors import InvalidParameter, require_finite, require_positive
+from spline_model.errors import InvalidParameter, is_finite, require_finite, require_positive
 from spline_model.mechanism import Mechanism, compliant_mechanism
 
 BODY = "body"
@@ -164,13 +164,10 @@ def _turned_by(c: Any, s: Any, x: Any, y: Any) -> tuple[Any, Any]:
 def _check_shape(length: float, inclination: float, crossing_ratio: float, orientation: float) -> None:
     """Refuse keywords that place no two strips that cross."""
     require_positive("length", length, "m")
-    for name, value, unit in (
-        ("inclination", inclination, "rad"),
-        ("crossing_ratio", crossing_ratio, "1"),
-        ("orientation", orientation, "rad"),
+    require_finite("orientation", orientation, "rad")
+    for name, value, most, expected in (
+        ("inclination", inclination, math.pi / 2, "an angle between 0 and pi/2 [rad]"),
+        ("crossing_ratio", crossing_ratio, 1.0, "a number between 0 and 1"),
     ):
-        require_finite(name, value, unit)
-    if not 0 < inclination < math.pi / 2:
-        raise InvalidParameter("inclination", inclination, "an angle between 0 and pi/2 [rad]")
-    if not 0 < crossing_ratio < 1:
-        raise InvalidParameter("crossing_ratio", crossing_ratio, "a number between 0 and 1")
+        if not (is_finite(value) and 0 < value < most):
+            raise InvalidParameter(name, value, expected)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import Bezier
-from spline_model.effects import GROUND, Clamp, Driven, DrivenRotation, MixedStretching, StripGravity
+from spline_model.effects import GROUND, AppliedLoad, Clamp, Driven, DrivenRotation, Gravity, MixedStretching
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.effects.elastic import Taper
 from spline_model.errors import InvalidParameter
@@ -43,7 +43,8 @@ class Strip:
     """A flexure or a piece of one: a curve C(u) of control points, given at rest.
 
     control_points: (n, 2) positions at rest [m]; of: name of the flexure that it is a piece of, if it is one;
-    taper: of its section, None for a constant one.
+    taper: of its section, None for a constant one; linear_density rho A [kg/m], rotary_density rho I [kg m],
+    those at the start of a taper.
     """
 
     name: str
@@ -51,6 +52,8 @@ class Strip:
     control_points: NDArray[np.float64]
     of: str | None = None
     taper: Taper | None = None
+    linear_density: float = 0.0
+    rotary_density: float = 0.0
 
     def gauss_points(self, of: str = "area") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return points u (P,) and weights p ds0 (P,) [m], exact for products of two basis functions.
@@ -95,6 +98,7 @@ class Strip:
 class Body:
     """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero.
 
+    mass [kg], moment_of_inertia [kg m^2].
     joint: whether it is a frame without mass, between two pieces of a strip or at its end, or where a load
     acts, behind all bodies; on: what carries its centre, if it is not free, and whether it then turns freely.
     """
@@ -104,6 +108,8 @@ class Body:
     joint: bool = False
     on: str | None = None
     turns: bool = True
+    mass: float = 0.0
+    moment_of_inertia: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -138,8 +144,13 @@ class Scene:
 
     @cached_property
     def structure(self) -> dict[Any, Any]:
-        """What does not go by the numbers of a scene, by name; many scenes may share it."""
+        """What does not go by the numbers of a scene, by name: it is that of all scenes which share it."""
         return {}
+
+    def sharing(self, structure: dict[Any, Any]) -> Scene:
+        """The scene itself, with that structure: of scenes that differ in numbers only."""
+        vars(self).update(structure=structure)
+        return self
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""
@@ -185,19 +196,17 @@ class Scene:
     def weight_of(self, strip: str) -> NDArray[np.float64]:
         """Return the weight of a strip per du: its parts (3, 2) with 1, u and u^2, as the area [N]."""
         total = np.zeros((3, 2))
-        for effect in self.of(StripGravity):
-            if effect.strip == strip:
-                own = self.strip(strip)
-                mass = effect.linear_density * own.length_to(np.ones(1))
-                parts = (1.0, 0.0, 0.0) if own.taper is None else own.taper.powers
-                total += np.outer(parts, mass * effect.acceleration)
+        for gravity in self.of(Gravity):
+            own = self.strip(strip)
+            mass = own.linear_density * own.length_to(np.ones(1))
+            parts = (1.0, 0.0, 0.0) if own.taper is None else own.taper.powers
+            total += np.outer(parts, mass * gravity.acceleration)
         return total
 
     @property
     def followers(self) -> bool:
         """Whether a load turns with its body."""
-        loads = self.of(Load)
-        return bool(loads) and any(getattr(load, "follower", False) for load in loads)
+        return any(load.follower for load in self.of(AppliedLoad))
 
     @property
     def turned(self) -> DrivenRotation | None:

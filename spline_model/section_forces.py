@@ -13,7 +13,7 @@ from spline_model.effects import GROUND, MixedStretching
 from spline_model.errors import InvalidParameter, require_choice
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
-from spline_model.paper import evaluate
+from spline_model.paper import strips_of
 from spline_model.scene import Scene
 from spline_model.sections import STATIONS, Sections, by_piece, curves, reactions, sections
 
@@ -194,16 +194,10 @@ def _by_moments(arc: Array, along: Sections, stretch: Array, direction: Array) -
 
 def _with_axial_forces(system: System, states: Array) -> Array:
     """The states (T, N) with the axial-force modes that their shapes give, where strips can stretch."""
-    layout, found = system.layout, np.array(states)
-    axial = slice(layout.coordinate_count, layout.multiplier_start)
-    rigidity = axial_rigidity(system)
-    elastic = np.diag(rigidity) != 0.0
-    gradient, hessian = np.empty(layout.size), np.empty((layout.size, layout.size))
-    for z in found:
-        free = z.copy()
-        free[layout.coordinate_count :] = 0.0
-        evaluate(system, free, 1.0, gradient, hessian)
-        z[axial] = np.where(elastic, rigidity @ gradient[axial], z[axial])
+    found, rigidity = np.array(states), axial_rigidity(system)
+    axial = slice(system.layout.coordinate_count, system.layout.multiplier_start)
+    forces = strips_of(system).strains(found) @ rigidity
+    found[:, axial] = np.where(np.diag(rigidity) != 0.0, forces, found[:, axial])
     return found
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import Bezier
 from spline_model.compile import System
-from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
+from spline_model.effects import GROUND, Bending, Clamp, Gravity, MixedStretching, Stretching
 from spline_model.scene import Scene, Strip
 from spline_model.solution import read_only
 from spline_model.strip.compiled import called, kernel
@@ -77,27 +77,25 @@ def sections(system: System, states: Array, stations: Array, *, balanced: bool =
 
     balanced: whether forces and moments are by balance with the clamp at the root [N, N m].
     """
-    scene, size = system.scene, (len(states), len(system.scene.whole), len(stations))
+    scene, z, done = system.scene, np.array(states), 0
+    size = len(states), len(scene.whole), len(stations)
     axial, moment, shear, shape = *np.empty((3, *size)), np.empty((*size, 2))
-    weights = scene.of(StripGravity)
-    done = 0
+    weights = scene.of(Gravity)
     for strips, at in by_piece(scene, stations):
-        inside = slice(done, done + len(at))
-        found = axial[..., inside], moment[..., inside], shear[..., inside], shape[..., inside, :]
         places = [system.layout.strip(strip.name).start for strip in strips]
         roots = [scene.clamps.get((strip.name, "start")) for strip in strips]
-        clamps = [-1 if rows is None else rows.start for rows in roots]
+        where = np.array((places, [-1 if rows is None else rows.start for rows in roots]))
         dead, borne = np.zeros((len(strips), 3, 2)), np.zeros((len(strips), 2, len(at)))
         for g, strip in enumerate(strips if weights else ()):
             dead[g] = scene.weight_of(strip.name)
             for weight in weights:
-                if weight.strip == strip.name:
-                    mass = weight.linear_density * strip.length_to(at, strip.taper)
-                    borne[g] += np.multiply.outer(weight.acceleration, mass)
+                mass = strip.linear_density * strip.length_to(at, strip.taper)
+                borne[g] += np.multiply.outer(weight.acceleration, mass)
         tables, lanes = _tables(strips[0].basis, at.tobytes()), np.empty((6, len(at)))
-        where = np.array((places, clamps))
-        _balance(np.ascontiguousarray(states), where, tables, at, dead, borne, bool(weights), lanes, found)
+        found = axial, moment, shear, shape
+        _balance(z, where, tables, at, dead, borne, bool(weights), lanes, done, found)
         if not balanced:
+            inside = slice(done, done + len(at))
             axial[..., inside], moment[..., inside] = _by_law(system, states, strips, at)
         done += len(at)
     return Sections(shape=shape, axial_force=axial, bending_moment=moment, shear_force=shear)
@@ -112,12 +110,12 @@ def _tables(basis: Bezier, at: bytes) -> Array:
 
 
 @kernel()
-def _balance(states, where, tables, u, dead, borne, heavy, lanes, found):
+def _balance(states, where, tables, u, dead, borne, heavy, lanes, first, found):
     """Force, moment and shear of what is beyond on what is before by balance with the clamp of the root, and
     the points.
 
-    where (2, G): places of the first control points and of the clamps, -1 of none; dead (G, 3, 2): weight
-    per du with 1, u and u^2, borne (G, 2, P) up to the stations [N].
+    first: of the stations u; where (2, G): places of the first control points and of the clamps, -1 of none;
+    dead (G, 3, 2): weight per du with 1, u and u^2, borne (G, 2, P) up to the stations [N].
     """
     axial, moment, shear, shape = found
     x, y, tx, ty, ax, ay = lanes[0], lanes[1], lanes[2], lanes[3], lanes[4], lanes[5]
@@ -130,17 +128,18 @@ def _balance(states, where, tables, u, dead, borne, heavy, lanes, found):
             _curve(z, at, tables[0], x, y)
             _curve(z, at, tables[1], tx, ty)
             for p in range(u.size):
-                shape[row, g, p, 0], shape[row, g, p, 1] = x[p], y[p]
+                to = first + p
+                shape[row, g, to, 0], shape[row, g, to, 1] = x[p], y[p]
                 speed = np.sqrt(tx[p] * tx[p] + ty[p] * ty[p])
                 ex, ey, px, py = tx[p] / speed, ty[p] / speed, -fx - borne[g, 0, p], -fy - borne[g, 1, p]
-                axial[row, g, p], shear[row, g, p] = px * ex + py * ey, py * ex - px * ey
-                moment[row, g, p] = (x[p] - z[at]) * fy - (y[p] - z[at + 1]) * fx - couple
+                axial[row, g, to], shear[row, g, to] = px * ex + py * ey, py * ex - px * ey
+                moment[row, g, to] = (x[p] - z[at]) * fy - (y[p] - z[at + 1]) * fx - couple
             for power in range(3 * heavy):
                 _curve(z, at, tables[2 + power], ax, ay)
                 for p in range(u.size):
                     whole = u[p] ** (power + 1) / (power + 1)
                     bx, by = whole * x[p] - ax[p], whole * y[p] - ay[p]
-                    moment[row, g, p] += bx * dead[g, power, 1] - by * dead[g, power, 0]
+                    moment[row, g, first + p] += bx * dead[g, power, 1] - by * dead[g, power, 0]
 
 
 @called()

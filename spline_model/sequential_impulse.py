@@ -39,14 +39,12 @@ from spline_model.errors import (
 from spline_model.impulses import (
     COUNTS,
     ENERGY,
-    LOST,
     Moving,
     Problem,
     Space,
+    advance,
     loads_of,
-    printed_advance,
-    sizes_of,
-    stable_advance,
+    store,
     strain_energy,
 )
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -66,7 +64,6 @@ from spline_model.motion.start import Start
 from spline_model.newton import Laps
 from spline_model.scene import Scene
 from spline_model.statics import settle, static_state
-from spline_model.strip.compiled import copy, kernel
 
 Array = NDArray[np.float64]
 
@@ -82,35 +79,6 @@ REASONS = {
     "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
 }
 """Why a motion of a form stops."""
-
-
-@kernel()
-def _store(moving, problem, space, record):
-    """Fill a record (W,) of the present state."""
-    size, count = moving.z.size, moving.v.size
-    copy(moving.z, record[:size])
-    copy(moving.v, record[size : size + count])
-    record[size + count] = strain_energy(moving.z, problem, space)
-    record[size + count + 1] = moving.status[LOST]
-
-
-@kernel()
-def _advance(moving, h, begin, end, every, stable, problem, space, records):
-    """Take the steps ``begin`` ... ``end`` - 1 of length h [s].
-
-    Returns the number of the first step that was not taken; ``moving`` stands at its begin. records: filled
-    at the ends of steps whose number ``every`` divides.
-    """
-    for k in range(begin, end):
-        if stable:
-            done = stable_advance(moving, h, problem, space)
-        else:
-            done = printed_advance(moving, h, problem, space)
-        if not done:
-            return k
-        if (k + 1) % every == 0:
-            _store(moving, problem, space, records[(k + 1) // every - begin // every - 1])
-    return end
 
 
 class Stepper(Moves):
@@ -130,7 +98,7 @@ class Stepper(Moves):
         self.name = f"sequential impulses, {form}"
         self.settings = {} if sweeps is None else {"sweeps": sweeps}
         problem = Problem.of(motion, sweeps=sweeps, tolerance=tolerance)
-        self._given = problem, zeros(Space, sizes_of(problem))
+        self._given = problem, zeros(Space, problem.sizes)
         self.counters = np.zeros(6, dtype=np.int64)
         z, v = start.z.copy(), start.v.copy()
         q, status = z[: v.size].copy(), np.zeros(3)
@@ -146,12 +114,12 @@ class Stepper(Moves):
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps ``begin`` ... ``end`` - 1; the number of the first that cannot be, or end."""
         stable = self._form == "stable"
-        return int(_advance(self.state, step, begin, end, every, stable, *self._given, records))
+        return int(advance(self.state, step, begin, end, every, stable, *self._given, records))
 
     def record(self) -> Array:
         """The present state's record (W,)."""
         record = np.empty(self.width)
-        _store(self.state, *self._given, record)
+        store(self.state, *self._given, record)
         return record
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
@@ -181,7 +149,7 @@ class Stepper(Moves):
 def _unresolved(scene: Scene, start: Start, step: float) -> str:
     """How far a step [s] under-resolves the swing at rest, or an empty string."""
     system = start.motion.system
-    squares = linear_modes(system, system.rest, start.motion.system.mass)[0]
+    squares = linear_modes(system, system.rest)[0]
     period = 2 * math.pi / math.sqrt(squares[0]) if squares[0] > 0 else math.inf
     if step * STEPS_PER_PERIOD <= period:
         return ""
@@ -199,7 +167,7 @@ def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
     mechanism = pivot.in_motion()
     system = compile_scene(mechanism.released())
     z = static_state(mechanism, rotation)[: system.layout.size]
-    highest = linear_modes(system, z, system.mass)[0][-1]
+    highest = linear_modes(system, z)[0][-1]
     return STABILITY_LIMIT / math.sqrt(highest)
 
 

@@ -18,17 +18,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 T = TypeVar("T")
 
-ERRORS = (
-    "trajectory",
-    "torque",
-    "stiffness",
-    "body_stiffness",
-    "energy",
-    "section_forces",
-    "stress",
-    "reactions",
-)
-"""What an accuracy of a static path is about."""
 TORQUE_SHARE = 4.5
 """Error of torque and energy over the squared moment defect, at most: 2.3 to 4.3 over crossing ratios
 0.05 to 0.95, inclinations 10 to 80 degrees and rotations to 180 degrees, with 4 to 10 control points."""
@@ -205,27 +194,21 @@ def largest(errors: Iterable[float]) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class ErrorEstimate:
-    """Estimated relative errors [1] of a static path that was solved to an ``accuracy``.
+    """Estimated relative errors [1] of an answer whose control points were chosen for an ``accuracy``.
 
-    trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
-    not driven; body_stiffness: of the body that is asked for, over that of the same state; torque, stiffness,
-    energy, section_forces, stress (the largest over a strip of the rectangular section that A and I imply):
-    largest error over the largest magnitude on the path. reactions: the same of the forces that drives and
-    supports exert, and of the moments, whichever is more. nan of what a path does not have.
+    errors, by name, of a static path: trajectory: largest error of a body's place over the largest
+    displacement, and of its turn where that is not driven; body_stiffness: of the body that is asked for,
+    over that of the same state; torque, stiffness, energy, section_forces, stress (the largest over a strip
+    of the rectangular section that A and I imply): largest error over the largest magnitude on the path;
+    reactions: the same of the forces that drives and supports exert, and of the moments, whichever is more.
+    nan of what a path does not have. Of modes: frequency, the largest error of all of them.
     segments of a strip that were chosen, and control_points of each; trials: control points of a strip that
     were tried.
     Excludes errors that more control points do not reduce: the simplifications of the theory.
     """
 
     accuracy: float
-    trajectory: float
-    torque: float
-    stiffness: float
-    body_stiffness: float
-    energy: float
-    section_forces: float
-    stress: float
-    reactions: float
+    errors: Mapping[str, float]
     segments: int
     control_points: int
     trials: tuple[int, ...]
@@ -233,16 +216,12 @@ class ErrorEstimate:
     @property
     def largest(self) -> float:
         """Largest of the estimated relative errors [1], which ``accuracy`` is about."""
-        return largest(float(getattr(self, name)) for name in ERRORS)
+        return largest(self.errors.values())
 
     @property
     def remark(self) -> str:
         """Empty, or what is more uncertain than the accuracy."""
-        return remark(
-            {name: float(getattr(self, name)) for name in ERRORS},
-            self.accuracy,
-            named(self.segments, self.control_points),
-        )
+        return remark(self.errors, self.accuracy, named(self.segments, self.control_points))
 
 
 def named(segments: int, points: int) -> str:
@@ -257,25 +236,6 @@ def remark(errors: Mapping[str, float], accuracy: float, grid: str) -> str:
         f"{name.replace('_', ' ')} {error:.1e}" for name, error in errors.items() if error > accuracy
     )
     return f"estimated error above {accuracy:g} with {grid}: {missed}" if missed else ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrequencyEstimate:
-    """Estimated relative error [1] of natural frequencies that were solved to an ``accuracy``.
-
-    Attributes
-    ----------
-    frequency : float
-        Largest error of all modes.
-    segments, control_points, trials
-        As in ``ErrorEstimate``.
-    """
-
-    accuracy: float
-    frequency: float
-    segments: int
-    control_points: int
-    trials: tuple[int, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
+from spline_model.reduced.model import from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import body_tangents
 from spline_model.scene import AXES
 from spline_model.sections import STATIONS, Sections, free_tips, reactions, sections
@@ -294,9 +294,25 @@ class StaticSolution(Tabulated):
         return self._stiffness_of(body)
 
     def _stiffness_of(self, body: str) -> Array:
+        """From the tangent at the bodies with the strips condensed, the Schur complement of all others on a
+        body's coordinates."""
         model, y = require_reduced(self.system), self.unknowns.y
         y = from_unknowns(model, self.states) if y is None else y
-        return _body_stiffness(model, y, self.load_factor, body)
+        at = 3 * [each.name for each in model.system.scene.bodies].index(body)
+        own, tangents = np.arange(at, at + 3), model.energy * body_tangents(model, y, self.load_factor)
+        rest = np.delete(np.arange(tangents.shape[1]), [*own, *model.fixed])
+        found = tangents[:, own[:, None], own]
+        if rest.size:
+            inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
+            # beside a unit, as all is of its order that is not round-off: one small number has no condition
+            padded = np.pad(inner, ((0, 0), (0, 1), (0, 1)))
+            padded[:, -1, -1] = model.energy
+            regular = np.linalg.cond(padded, 1) < SINGULAR
+            moves = np.linalg.solve(inner[regular], beside[regular])
+            found[regular] -= beside[regular].swapaxes(1, 2) @ moves
+            found[~regular] = np.nan
+        unit = model.system.scales.pose
+        return np.asarray(found / (unit[:, None] * unit))
 
     @property
     def resolution(self) -> str:
@@ -325,26 +341,3 @@ class StaticSolution(Tabulated):
             "inertia": self.inertia,
             "moment_defect": self.moment_defect,
         }
-
-
-def _body_stiffness(model: Reduced, y: Array, load: Array, body: str) -> Array:
-    """From the tangent at the bodies with the strips condensed, the Schur complement (S, 3, 3) of all others
-    on a body's coordinates."""
-    at = 3 * [each.name for each in model.system.scene.bodies].index(body)
-    own = np.arange(at, at + 3)
-    tangents = model.energy * body_tangents(model, y, load)
-    other = np.ones(tangents.shape[1], dtype=bool)
-    other[own] = other[model.fixed] = False
-    rest = np.flatnonzero(other)
-    found = tangents[:, own[:, None], own]
-    if rest.size:
-        inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
-        # beside a unit, as all is of its order that is not round-off: a single small number has no condition
-        padded = np.pad(inner, ((0, 0), (0, 1), (0, 1)))
-        padded[:, -1, -1] = model.energy
-        regular = np.linalg.cond(padded, 1) < SINGULAR
-        moves = np.linalg.solve(inner[regular], beside[regular])
-        found[regular] -= beside[regular].swapaxes(1, 2) @ moves
-        found[~regular] = np.nan
-    unit = np.array([model.length, model.length, 1.0])
-    return np.asarray(found / (unit[:, None] * unit))

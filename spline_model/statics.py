@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from spline_model.accuracy import answered
 from spline_model.compile import System, compile_scene
 from spline_model.confirmed import Grid
-from spline_model.effects import Driven
+from spline_model.effects import AppliedLoad, Driven
 from spline_model.effects.base import Constraint, Load
-from spline_model.effects.boundary import Sized
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import (
     InvalidParameter,
@@ -226,7 +225,7 @@ def has_loads(scene: Scene) -> bool:
 def steady(scene: Scene) -> Scene:
     """Return the scene with loads and driven displacements in full at any load factor."""
     effects = (
-        replace(e, steady=True) if isinstance(e, Sized) or (isinstance(e, Driven) and e.beside) else e
+        replace(e, steady=True) if isinstance(e, AppliedLoad) or (isinstance(e, Driven) and e.beside) else e
         for e in scene.effects
     )
     return replace(scene, effects=tuple(effects))
@@ -305,13 +304,11 @@ def static_state(
     pre-strain act in full; the multipliers of released displacements are excluded. starts: as in
     ``solve_mechanism``.
     """
-    mechanism = mechanism.propped(rotation is not None, body)
-    z = settle(mechanism, rotation, increments, body, starts=starts).states[-1]
-    driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
-    layout = driven.layout
-    constraints = enumerate(driven.of(Constraint))
-    kept = [i for i, each in constraints if not (isinstance(each, Driven) and (each.prop or each.lets_go))]
-    return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
+    path = settle(mechanism, rotation, increments, body, starts=starts)
+    z, scene = path.states[-1], path.system.scene
+    held = enumerate(scene.of(Constraint))
+    kept = [i for i, each in held if not (isinstance(each, Driven) and (each.prop or each.lets_go))]
+    return np.concatenate((z[: scene.layout.multiplier_start], *(z[scene.layout.rows(i)] for i in kept)))
 
 
 def settle(

@@ -9,15 +9,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import (
-    GROUND,
-    BodyGravity,
-    Driven,
-    Spring,
-    StripGravity,
-)
+from spline_model.effects import GROUND, AppliedLoad, Driven, Gravity, Spring
 from spline_model.effects.base import Constraint
-from spline_model.effects.boundary import STEADY, History, Sized
+from spline_model.effects.boundary import FOLLOWER, STEADY, History
 from spline_model.frames import NO_FRAMES, Frames
 from spline_model.scene import Scene
 
@@ -53,6 +47,11 @@ class DriveTable(NamedTuple):
     @classmethod
     def of(cls, scene: Scene) -> Self:
         """The driven rotations and displacements, one row a coordinate."""
+        shared, turned = scene.structure, scene.turned
+        alone = scene.of(Driven) == (turned,)
+        if turned is not None and alone and not turned.steady and "drives" in shared:
+            known: Self = shared["drives"]
+            return known._replace(target=np.array([turned.angle]))
         rows, histories = [], []  # type: list[tuple[float, ...]], list[History]
         for i, drive in enumerate(scene.of(Constraint)):
             if not isinstance(drive, Driven):
@@ -65,7 +64,10 @@ class DriveTable(NamedTuple):
                 rows.append((*kind, *drive.held))
                 histories.append(drive.history or STEADY)
         names = ("coordinate", "origin", "target", "row", "turns", "prop", "begin", "until")
-        return cls(**_columns(names, rows), **_histories(histories))
+        table = cls(**_columns(names, rows), **_histories(histories))
+        if alone:
+            shared["drives"] = table
+        return table
 
 
 class LoadTable(NamedTuple):
@@ -86,10 +88,11 @@ class LoadTable(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, followers: bool = False) -> LoadTable:
         """Return dead forces and moments on bodies that grow, and ``followers``, one row a component."""
-        growing = [load for load in scene.of(Sized) if not load.steady]
-        if not followers:
-            growing = [load for load in growing if not getattr(load, "follower", False)]
-        return _table_of_loads(scene, growing) if growing else NO_LOADS
+        growing = [load for load in scene.of(AppliedLoad) if not load.steady]
+        if not growing:
+            return NO_LOADS
+        table = _table_of_loads(scene, growing)
+        return table if followers else table.rows(table.turns != FOLLOWER)
 
     def rows(self, kept: NDArray[np.bool_]) -> LoadTable:
         """Return the rows (R,) that are ``kept``, in N and N m."""
@@ -108,8 +111,12 @@ def frames_of(scene: Scene) -> Frames:
     return Frames(np.array(places, dtype=np.int64), np.array(levers)) if places else NO_FRAMES
 
 
-def _table_of_loads(scene: Scene, growing: Sequence[Sized]) -> LoadTable:
-    parts = [(load.history, part) for load in growing for part in load.components(scene.layout)]
+def _table_of_loads(scene: Scene, growing: Sequence[AppliedLoad]) -> LoadTable:
+    parts = [
+        (load.history, (scene.layout.bodies[load.body] + axis, value, kind))
+        for load in growing
+        for axis, value, kind in load.components
+    ]
     columns = _columns(("coordinate", "value", "turns"), [part for _, part in parts])
     return LoadTable(**columns, **_histories([history for history, _ in parts]))
 
@@ -141,19 +148,19 @@ NO_LOADS = _table_of_loads(Scene(strips=(), bodies=(), effects=()), ())
 def weight(scene: Scene) -> Array:
     """Return the generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names
     any."""
-    strips, bodies = scene.of(StripGravity), scene.of(BodyGravity)
-    steady = [load for load in scene.of(Sized) if load.steady and not getattr(load, "follower", False)]
-    if not (strips or bodies or steady):
+    steady = [load for load in scene.of(AppliedLoad) if load.steady]
+    dead = [(load.body, part) for load in steady for part in load.components if part[2] != FOLLOWER]
+    if not (scene.of(Gravity) or dead):
         return np.zeros(0)
-    force = np.zeros(scene.layout.coordinate_count)
-    for strip in strips:
-        share = strip.linear_density * scene.strip(strip.strip).share_of_length()
-        force[scene.layout.strip(strip.strip)] += np.outer(share, strip.acceleration).ravel()
-    for body in bodies:
-        force[scene.layout.body(body.body)][:2] += body.mass * np.asarray(body.acceleration)
-    for load in steady:
-        for place, value, _ in load.components(scene.layout):
-            force[place] += value
+    force, layout = np.zeros(scene.layout.coordinate_count), scene.layout
+    for gravity in scene.of(Gravity):
+        for strip in scene.strips:
+            share = strip.linear_density * strip.share_of_length()
+            force[layout.strip(strip.name)] += np.outer(share, gravity.acceleration).ravel()
+        for heavy in scene.own_bodies:
+            force[layout.body(heavy.name)][:2] += heavy.mass * np.asarray(gravity.acceleration)
+    for body, (axis, value, _) in dead:
+        force[layout.bodies[body] + axis] += value
     return force
 
 

@@ -126,113 +126,98 @@ def _vtk(answer: Answer) -> dict[str, bytes]:
     names = [f"{answer.analysis}_{number:04d}.vtu" for number in range(len(answer.values))]
     contents = {f"{answer.analysis}.pvd": _series(answer.values, names)}
     with tempfile.TemporaryDirectory() as folder:
-        for state, name in enumerate(names):
+        for name, mesh in zip(names, meshes(answer), strict=True):
             path = Path(folder) / name
-            meshio.write(path, mesh(answer, state), file_format="vtu")
+            meshio.write(path, mesh, file_format="vtu")
             contents[name] = path.read_bytes()
     return contents
 
 
-def mesh(answer: Answer, state: int) -> Any:
-    """Return one state: strips as lines, bodies as centres with lines to the ends they carry, and clamps.
+def meshes(answer: Answer) -> Iterator[Any]:
+    """Yield the states: strips as lines, bodies as centres with lines to the ends they carry, and clamps.
 
     Points are those of the strips, strip by strip from root to tip, then the bodies' centres, then once more
     the ends that bodies carry, as points of the bodies. What the state has as a whole is data of every cell.
     """
     import meshio
 
-    cells = list(_cells(answer))
+    body, foot, blocks = _blocks(answer)
+    points, data = _point_data(answer, body, foot)
     whole = {answer.series: answer.values} | numbers_of(answer)
-    of_cells: dict[str, list[Any]] = {
-        "part_kind": [np.full(len(parts), kind) for kind, _, parts, _ in cells],
-        "part_number": [parts for _, _, parts, _ in cells],
-    }
-    for name, values in whole.items():
-        of_cells[name] = [np.full(len(parts), float(values[state])) for _, _, parts, _ in cells]
-    return meshio.Mesh(
-        points=_points(answer, state),
-        cells=[(shape, nodes) for _, shape, _, nodes in cells],
-        point_data=_point_data(answer, state),
-        cell_data=of_cells,
-    )
+    for state in range(len(answer.values)):
+        cells: dict[str, list[Any]] = {
+            "part_kind": [np.full(len(parts), kind) for kind, _, parts, _ in blocks],
+            "part_number": [parts for _, _, parts, _ in blocks],
+        }
+        for name, values in whole.items():
+            cells[name] = [np.full(len(parts), float(values[state])) for _, _, parts, _ in blocks]
+        yield meshio.Mesh(
+            points=points[state],
+            cells=[(shape, nodes) for _, shape, _, nodes in blocks],
+            point_data={name: values[state] for name, values in data.items()},
+            cell_data=cells,
+        )
 
 
-def _cells(answer: Answer) -> Iterator[tuple[int, str, Indices, Indices]]:
-    """Yield kind, VTK shape, numbers of the parts and points (cells, 1 or 2) of the blocks that there are."""
-    strips, stations = answer.along.rotation.shape[1:]
-    first = stations * np.arange(strips)
-    nodes = (first[:, None] + np.arange(stations - 1)).ravel()
-    yield STRIP, "line", np.repeat(np.arange(strips), stations - 1), np.stack([nodes, nodes + 1], axis=1)
-    centres = strips * stations + np.arange(len(answer.design.bodies))
-    if len(centres):
-        yield BODY_CENTRE, "vertex", np.arange(len(centres)), centres[:, None]
-    ends = list(_carried(answer))
-    if ends:
-        bodies = np.array([body for body, _, _ in ends])
-        feet = strips * stations + len(answer.design.bodies) + np.arange(len(ends))
-        yield BODY_ARM, "line", bodies, np.stack([centres[bodies], feet], axis=1)
-    clamps = [start for part, start in zip(answer.design.strips, first, strict=True) if part.root == GROUND]
-    clamps += [
-        start + stations - 1 for p, start in zip(answer.design.strips, first, strict=True) if p.tip == GROUND
+def _blocks(answer: Answer) -> tuple[Indices, Indices, list[tuple[int, str, Indices, Indices]]]:
+    """Return the numbers (E,) of the bodies that carry ends of strips, and of the points that are these ends;
+    and kind, VTK shape, numbers of the parts and points (cells, 1 or 2) of the blocks that there are."""
+    design = answer.design
+    number = np.arange(answer.along.rotation[0].size).reshape(len(design.strips), -1)
+    names, ends = [body.name for body in design.bodies], number[:, [0, -1]]
+    on = np.array([(part.root, part.tip) for part in design.strips], dtype=object)
+    clamps = ends.T[on.T == GROUND]
+    carried = np.array([[name in names for name in own] for own in on])
+    body = np.array([names.index(name) for name in on[carried]], dtype=np.int64)
+    centres = number.size + np.arange(len(names))
+    arms = np.stack([centres[body], number.size + len(names) + np.arange(len(body))], axis=1)
+    lines = np.stack([number[:, :-1], number[:, 1:]], axis=-1)
+    blocks = [
+        (STRIP, "line", np.repeat(np.arange(len(lines)), lines.shape[1]), lines.reshape(-1, 2)),
+        (BODY_CENTRE, "vertex", np.arange(len(names)), centres[:, None]),
+        (BODY_ARM, "line", body, arms),
+        (CLAMP, "vertex", np.arange(len(clamps)), clamps[:, None]),
     ]
-    if clamps:
-        yield CLAMP, "vertex", np.arange(len(clamps)), np.array(clamps)[:, None]
+    return body, ends[carried], [block for block in blocks if len(block[2])]
 
 
-def _carried(answer: Answer) -> Iterator[tuple[int, int, int]]:
-    """Yield body, strip and station of every end that a body carries."""
-    names = [block.name for block in answer.design.bodies]
-    for strip, part in enumerate(answer.design.strips):
-        for on, station in ((part.root, 0), (part.tip, -1)):
-            if on in names:
-                yield names.index(on), strip, station
+def _point_data(answer: Answer, body: Indices, foot: Indices) -> tuple[Array, dict[str, Array]]:
+    """Return the points of all states (S, K, 3) and their data (S, K, ...) by name.
 
+    body, foot: numbers (E,) of the bodies that carry ends, and of the points of strips that are these ends.
+    """
+    along = answer.along
 
-def _everywhere(answer: Answer, strips: Array, bodies: Array) -> Array:
-    """Return vectors at all points (K, 2) from those of strips (G, P, 2) and bodies' centres (B, 2)."""
-    feet = [strips[strip, station] for _, strip, station in _carried(answer)]
-    return np.concatenate([strips.reshape(-1, 2), bodies, np.array(feet).reshape(-1, 2)])
+    def everywhere(strips: Array, bodies: Array) -> Array:
+        """Return vectors at all points from those of strips (S, G, P, 2) and bodies' centres (S, B, 2)."""
+        flat = strips.reshape(len(strips), -1, 2)
+        plane = np.concatenate([flat, bodies, flat[:, foot]], axis=1)
+        return np.pad(plane, ((0, 0), (0, 0), (0, 1)))
 
+    def of_strips(values: Array, elsewhere: float) -> Array:
+        """Return values at all points from those of strips (S, G, P)."""
+        beyond = along.bodies.shape[1] + len(foot)
+        return np.pad(values.reshape(len(values), -1), ((0, 0), (0, beyond)), constant_values=elsewhere)
 
-def _points(answer: Any, state: int) -> Array:
-    still = _everywhere(answer, answer.along.shape[state], answer.along.bodies[state, :, :2])
-    mode: Any = _mode(answer, state)
-    return _spatial(still if mode is None else still + answer.scale_of(state) * mode)
-
-
-def _mode(answer: Answer, state: int) -> Array | None:
-    """Return the mode at unit modal mass at all points (K, 2); None of other analyses."""
-    if not isinstance(answer, Spectrum):
-        return None
-    return _everywhere(answer, answer.mode_shape[state], answer.mode_bodies[state, :, :2])
-
-
-def _point_data(answer: Answer, state: int) -> dict[str, Any]:
-    along, carried = answer.along, [body for body, _, _ in _carried(answer)]
-    bodies = along.bodies[state]
-    beyond = len(bodies) + len(carried)
-    nothing, still = np.full(beyond, np.nan), np.zeros(beyond)
-    forces = np.zeros((*along.rotation.shape[1:], 2))
-    moments = np.zeros(along.rotation.shape[1:])
-    for end, station in enumerate((0, -1)):
-        forces[:, station] = along.reactions[state, :, end, :2]
-        moments[:, station] = along.reactions[state, :, end, 2]
-    moved = _everywhere(answer, along.shape[state] - along.rest_shape, bodies[:, :2] - along.rest_bodies)
-    found = {
-        "displacement_m": _spatial(moved),
-        "rotation_rad": np.concatenate([along.rotation[state].ravel(), bodies[:, 2], bodies[carried, 2]]),
-        "arc_length_m": np.concatenate([along.arc_length.ravel(), nothing]),
-        **{name: np.concatenate([each[state].ravel(), nothing]) for name, each in along_of(answer).items()},
-        "reaction_force_N": _spatial(np.concatenate([forces.reshape(-1, 2), np.zeros((beyond, 2))])),
-        "reaction_moment_Nm": np.concatenate([moments.ravel(), still]),
+    reactions = np.zeros((*along.rotation.shape, 3))
+    reactions[:, :, [0, -1]] = along.reactions
+    force = [of_strips(reactions[..., axis], 0.0) for axis in range(2)]
+    turns, arc = along.bodies[..., 2], np.broadcast_to(along.arc_length, along.rotation.shape)
+    rotation = along.rotation.reshape(len(turns), -1)
+    points = everywhere(along.shape, along.bodies[..., :2])
+    data = {
+        "displacement_m": points - everywhere(along.rest_shape[None], along.rest_bodies[None]),
+        "rotation_rad": np.concatenate([rotation, turns, turns[:, body]], axis=1),
+        "arc_length_m": of_strips(arc, np.nan),
+        **{name: of_strips(values, np.nan) for name, values in along_of(answer).items()},
+        "reaction_force_N": np.stack([*force, np.zeros_like(force[0])], axis=-1),
+        "reaction_moment_Nm": of_strips(reactions[..., 2], 0.0),
     }
-    mode = _mode(answer, state)
-    return found if mode is None else found | {"mode_per_sqrt_kg": _spatial(mode)}
-
-
-def _spatial(plane: Array) -> Array:
-    """Return vectors of the plane (K, 2) with z = 0, (K, 3)."""
-    return np.pad(plane, ((0, 0), (0, 1)))
+    if isinstance(answer, Spectrum):
+        mode = everywhere(answer.mode_shape, answer.mode_bodies[..., :2])
+        data["mode_per_sqrt_kg"] = mode
+        points = points + np.array([[[answer.scale_of(k)]] for k in range(len(mode))]) * mode
+    return points, data
 
 
 def _series(values: Array, names: list[str]) -> bytes:

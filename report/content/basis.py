@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from report.facts import FACTS, Fact, Results, Stored, Table, listing
-from report.forms import Form, count, degrees, percent, power, significant, unit
+from report.forms import Form, count, degrees, percent, significant, unit
 from studies.cases.problem import Problem, named_case
 from studies.record.source import ROOT
 from studies.registry import STUDIES
@@ -78,7 +78,7 @@ def _matrix(results: Results) -> Table:
             first = gates[claim["gates"][0]]
             pair, scale = [first["measured"], first["limit"]], first["unit"].partition(",")[0]
             scale = "relative" if scale == "1" or " over " in scale else scale.removesuffix(" of the beam")
-        form = percent if scale == "relative" else _small
+        form = percent if scale == "relative" else significant
         values = [form(value) for value in pair]
         yield [claim["text"], claim["kind"], *values, scale, count(number), claim["test"]]
 
@@ -87,11 +87,6 @@ def _magnitude(source: Mapping[str, Any], results: Results) -> float:
     """Return the largest magnitude of a column of a stored table, from its entry in ``claims.toml``."""
     rows = Stored(source["study"], source["table"], **source["where"]).rows(results)
     return float(rows[source["column"]].abs().max())
-
-
-def _small(value: float) -> str:
-    """Return a number with two digits, below a thousandth as a power of ten."""
-    return power(value) if value < 1e-3 else significant(value)
 
 
 FACTS |= {

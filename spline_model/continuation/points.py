@@ -184,15 +184,16 @@ def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float
 def hermite(known: Sequence[tuple[float, Any, Any]], at: Any) -> Any:
     """Return Hermite's polynomial through (place, value, slope) triples at a place or places, in their units.
 
-    It is of degree 2 k - 1 for k triples.
+    It is of degree 2 k - 1 for k triples. Values are taken from the last one: what does not change then has
+    no round-off.
     """
-    total = 0.0
+    total = last = known[-1][1]
     for i, (place, value, slope) in enumerate(known):
         share, lean = 1.0, 0.0
         for other in (each[0] for j, each in enumerate(known) if j != i):
             share = share * ((at - other) / (place - other)) ** 2
             lean += 2.0 / (place - other)
-        total = total + share * ((1.0 - (at - place) * lean) * value + (at - place) * slope)
+        total = total + share * ((1.0 - (at - place) * lean) * (value - last) + (at - place) * slope)
     return total
 
 
@@ -311,8 +312,9 @@ def _sense(system: System, moved: Array) -> float:
 
 
 def _where_zero(bracket: _Bracket, value: Callable[[Point], float]) -> Point | None:
-    """The state where a value goes through zero, by secants whose older end is weighed down while it stays
-    (Anderson and Bjoerck, BIT 13 (1973) 253-264).
+    """The state where a value goes through zero: inverse quadratic interpolation, or bisection where the last
+    three values are not those of a smooth monotonic function, as at a kink of the softest eigenvalue
+    (Chandrupatla, Advances in Engineering Software 28 (1997) 145-149).
 
     None where it is not found, or where the sign changes in a jump: then there is no zero.
     """
@@ -321,26 +323,31 @@ def _where_zero(bracket: _Bracket, value: Callable[[Point], float]) -> Point | N
         point = bracket.at(t)
         return np.nan if point is None else value(point)
 
-    a, b, fa, fb = 0.0, 1.0, at(0.0), at(1.0)
+    a, b, fa, fb = 1.0, 0.0, at(1.0), at(0.0)
     if not fa * fb < 0.0:
         return None
-    least, nearest = min((abs(fa), a), (abs(fb), b))
-    small, nothing = FINE * least, JUMP * least
-    while abs(b - a) >= FINE and least > small:
-        t = min(max(b - fb * (b - a) / (fb - fa), min(a, b) + 0.5 * FINE), max(a, b) - 0.5 * FINE)
+    small, nothing = (part * min(abs(fa), abs(fb)) for part in (FINE, JUMP))
+    share, failed = 0.5, False
+    while abs(b - a) >= FINE and min(abs(fa), abs(fb)) > small:
+        t = a + share * (b - a)
         ft = at(t)
         if not np.isfinite(ft):  # close to the point Newton may fail: elsewhere, or the nearer end
-            t = 0.5 * (a + b)
-            ft = at(t)
-        if not np.isfinite(ft):
-            break
-        least, nearest = min((least, nearest), (abs(ft), t))
-        if ft * fb < 0.0:
-            a, fa = b, fb
-        else:
-            fa *= 1.0 - ft / fb if abs(ft) < abs(fb) else 0.5
-        b, fb = t, ft
-    return bracket.at(nearest) if least <= nothing else None
+            if failed or share == 0.5:
+                break
+            share, failed = 0.5, True
+            continue
+        failed = False
+        c, fc = a, fa
+        if ft * fa < 0.0:
+            c, fc, b, fb = b, fb, a, fa
+        a, fa = t, ft
+        place, height = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        share = 0.5
+        if height**2 < place and (1.0 - height) ** 2 < 1.0 - place:
+            share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            share = min(max(share, FINE), 1.0 - FINE)
+    t, least = (a, abs(fa)) if abs(fa) < abs(fb) else (b, abs(fb))
+    return bracket.at(t) if least <= nothing else None
 
 
 def _eigenpair(work: Followed, number: int) -> tuple[float, Array]:

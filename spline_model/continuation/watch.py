@@ -14,8 +14,7 @@ from spline_model.checks import left_the_branch
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.points import BIFURCATION, LIMIT, Crossing, between, booked, directed, reached
-from spline_model.effects import AppliedForce, AppliedMoment, Driven, DrivenRotation
-from spline_model.effects.base import Load
+from spline_model.effects import AppliedLoad, Driven, DrivenRotation
 from spline_model.newton import correct
 from spline_model.solution import CriticalPoint, Status
 from spline_model.static_answers import StaticSolution
@@ -194,18 +193,19 @@ def place(
 
 def _acting(system: System, load_factor: float, rotation: float) -> list[str]:
     """What drives and loads come to, in words."""
-    parts = []
-    for effect in (*system.scene.of(Driven), *system.scene.of(Load)):
-        share = 1.0 if getattr(effect, "steady", False) else load_factor
+    parts: list[str] = []
+    acting: tuple[Any, ...] = system.scene.of(Driven) + system.scene.of(AppliedLoad)
+    for effect in acting:
+        share = 1.0 if effect.steady else load_factor
         if isinstance(effect, DrivenRotation) and effect.moves:
             known = not (effect.beside or math.isnan(rotation))
             parts.append(f"rotation {math.degrees(rotation if known else share * effect.angle):.5g} deg")
         elif isinstance(effect, Driven) and effect.moves:
             parts.append(f"displacement {1e3 * abs(share) * math.hypot(*effect.parts.values()):.4g} mm")
-        elif isinstance(effect, AppliedMoment) and effect.moment:
-            parts.append(f"moment {_sized(share * effect.moment)}N m")
-        elif isinstance(effect, AppliedForce) and any(effect.force):
+        if isinstance(effect, AppliedLoad) and any(effect.force):
             parts.append(f"force {_sized(abs(share) * math.hypot(*effect.force))}N")
+        if isinstance(effect, AppliedLoad) and effect.moment:
+            parts.append(f"moment {_sized(share * effect.moment)}N m")
     return parts
 
 

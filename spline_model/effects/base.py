@@ -42,63 +42,56 @@ class Constraint:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StripInertia(Inertia):
-    """Translational inertia of one strip.
+    """Translational inertia of all strips.
 
         T = 1/2 int mu |dC/dt|^2 ds0                                               [J]
 
     over the reference length, where the mass is (Eq 18 with ds read as ds0): the mass
-    matrix is constant in the control points. A strip without it is massless: it follows
-    its bodies quasi-statically.
+    matrix is constant in the control points. Without it strips are massless: they follow
+    their bodies quasi-statically.
 
-    Parameters: strip, linear_density mu >= 0 [kg/m].
     Neglected: rotary inertia of the section.
     """
-
-    strip: str
-    linear_density: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SectionRotaryInertia(Inertia):
-    """Rotary inertia of the sections of one strip.
+    """Rotary inertia of the sections of all strips.
 
         T = 1/2 int rho I |d(C')/dt|^2 / J0^2 ds0                                  [J]
 
     The section's director is the tangent C' / J0 turned by a right angle, not normalised:
     its mass matrix stays constant. It is the inertia rho I (d theta/dt)^2 of a strip that
     does not stretch; otherwise it differs by the order of the axial strain and its rate.
-
-    Parameters: strip, rotary_density rho I >= 0 [kg m].
     """
-
-    strip: str
-    rotary_density: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyInertia(Inertia):
-    """Inertia of one body about its centre, T = 1/2 m |v|^2 + 1/2 J omega^2 (Eq 17)  [J].
+    """Inertia of all bodies about their centres, T = 1/2 m |v|^2 + 1/2 J omega^2 (Eq 17)  [J]."""
 
-    Parameters: body, mass >= 0 [kg], moment_of_inertia J >= 0 [kg m^2].
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Gravity(Potential):
+    """Weight of all strips and bodies, V = - int mu g . C ds0 - m g . r [J], linear in the coordinates.
+
+    It acts in full at any load factor. Parameter: acceleration g [m/s^2].
     """
 
-    body: str
-    mass: float
-    moment_of_inertia: float
+    acceleration: tuple[float, float] = (0.0, -9.81)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StripDamping(Dissipation):
-    """Kelvin-Voigt damping in proportion to the stiffness of one strip.
+    """Kelvin-Voigt damping in proportion to the stiffness of all strips.
 
     Every strain has the stress E (eps + relaxation_time d(eps)/dt): frame indifferent, so
     that a rigid motion is not damped. A mode of circular frequency omega has the damping
     ratio relaxation_time omega / 2.
 
-    Parameters: strip, relaxation_time beta >= 0 [s].
+    Parameter: relaxation_time beta >= 0 [s].
     """
 
-    strip: str
     relaxation_time: float
 
     def __post_init__(self) -> None:
@@ -107,14 +100,12 @@ class StripDamping(Dissipation):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StripDrag(Dissipation):
-    """Drag in proportion to the mass of one strip: force per length - rate mu dC/dt.
+    """Drag in proportion to the mass of all strips: force per length - rate mu dC/dt.
 
     A mode has the damping ratio rate / (2 omega); a rigid motion is damped as well.
-    Parameters: strip, linear_density mu [kg/m], rate alpha >= 0 [1/s].
+    Parameter: rate alpha >= 0 [1/s].
     """
 
-    strip: str
-    linear_density: float
     rate: float
 
     def __post_init__(self) -> None:
@@ -123,14 +114,13 @@ class StripDrag(Dissipation):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyDamper(Dissipation):
-    """Viscous damper between a body and the ground: force - c v, moment - c_theta omega.
+    """Viscous damper between every body and the ground: force - c v, moment - c_theta omega.
 
-    Parameters: body, translation c >= 0 [N s/m], rotation c_theta >= 0 [N m s].
+    Parameters: translation c >= 0 [N s/m], rotation c_theta >= 0 [N m s].
     """
 
-    body: str
-    translation: float
-    rotation: float
+    translation: float = 0.0
+    rotation: float = 0.0
 
     def __post_init__(self) -> None:
         require_not_negative("translation", self.translation, "N s/m")

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from spline_model.effects.base import Constraint, Load, Potential
 from spline_model.errors import InvalidParameter, require_finite, require_not_negative
-from spline_model.layout import Layout
 from spline_model.strip.compiled import kernel
 
 Array = NDArray[np.float64]
@@ -30,9 +29,9 @@ FORCE, MOMENT, FOLLOWER = range(3)
 """Kinds of components of loads; a follower's two stand one behind the other."""
 
 
-def _factor_of(history: History, time: float) -> float:
-    """The factor at an instant [s]."""
-    times, factors = zip(*history, strict=True)
+def _factor_of(history: History | None, time: float) -> float:
+    """The factor at an instant [s]; 1 without a history."""
+    times, factors = zip(*(history or STEADY), strict=True)
     return float(np.interp(time, times, factors))
 
 
@@ -128,10 +127,6 @@ class Driven(Constraint):
 
     def at(self, time: float) -> Self:
         """The drive with what it has at an instant [s] of a motion."""
-        return self if self.history is None else self._times(_factor_of(self.history, time))
-
-    def _times(self, factor: float) -> Self:
-        """The drive times a factor."""
         raise NotImplementedError
 
 
@@ -174,8 +169,9 @@ class DrivenRotation(Driven):
         """The rotation [rad] under its axis, 2."""
         return {2: self.angle}
 
-    def _times(self, factor: float) -> Self:
-        return replace(self, angle=factor * self.angle)
+    def at(self, time: float) -> Self:
+        """The drive with what it has at an instant [s] of a motion."""
+        return replace(self, angle=_factor_of(self.history, time) * self.angle)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -216,90 +212,45 @@ class DrivenDisplacement(Driven):
         """The prescribed displacements [m] under their axes, 0 and 1."""
         return {axis: part for axis, part in enumerate(self.displacement) if part is not None}
 
-    def _times(self, factor: float) -> Self:
-        x, y = (None if moved is None else factor * moved for moved in self.displacement)
+    def at(self, time: float) -> Self:
+        """The drive with what it has at an instant [s] of a motion."""
+        x, y = (part and _factor_of(self.history, time) * part for part in self.displacement)
         return replace(self, displacement=(x, y))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Sized(Load):
-    """A load of a size x load factor, in a motion x history(t)."""
+class AppliedLoad(Load):
+    """Force at the centre of a body and moment on it, x load factor, in a motion x history(t).
 
+    The force is dead, or a ``follower`` that turns with the body: it has no potential then.
+
+    Parameters: body, force (fx, fy) [N], moment, counter-clockwise positive [N m], history, follower, steady:
+    in full at any load factor.
+    """
+
+    body: str
+    force: tuple[float, float] = (0.0, 0.0)
+    moment: float = 0.0
     history: History = STEADY
+    follower: bool = False
     steady: bool = False
 
     def __post_init__(self) -> None:
         if not self.history or any(b[0] <= a[0] for a, b in pairwise(self.history)):
             raise InvalidParameter("history", self.history, "(time, factor) pairs with increasing times [s]")
 
-    def _times(self, factor: float) -> Self:
-        """The load times a factor."""
-        raise NotImplementedError
-
     def at(self, time: float) -> Self:
         """The load as it is at an instant [s] of a motion."""
-        return self._times(_factor_of(self.history, time))
+        factor = _factor_of(self.history, time)
+        x, y = self.force
+        return replace(self, force=(factor * x, factor * y), moment=factor * self.moment)
 
-    def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """Return place in z, value [N, N m] and kind of each component."""
-        raise NotImplementedError
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class AppliedForce(Sized):
-    """Force on a body at its centre: (fx, fy) x load factor, in a motion x history(t).  [N]
-
-    Dead, or a ``follower`` that turns with the body: such a force has no potential.
-    """
-
-    body: str
-    force: tuple[float, float]
-    follower: bool = False
-
-    def _times(self, factor: float) -> Self:
-        return replace(self, force=(factor * self.force[0], factor * self.force[1]))
-
-    def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """Return place in z, value [N] and kind of fx and fy of the body."""
+    @property
+    def components(self) -> list[tuple[int, float, int]]:
+        """Axis, value [N, N m] and kind of each component."""
         kind = FOLLOWER if self.follower else FORCE
-        return [(layout.bodies[self.body] + k, force, kind) for k, force in enumerate(self.force)]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class AppliedMoment(Sized):
-    """Moment on a body, counter-clockwise positive: x load factor, in a motion x history(t).  [N m]"""
-
-    body: str
-    moment: float
-
-    def _times(self, factor: float) -> Self:
-        return replace(self, moment=factor * self.moment)
-
-    def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """Return place in z, value [N m] and kind of the moment of the body."""
-        return [(layout.bodies[self.body] + 2, self.moment, MOMENT)]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StripGravity(Potential):
-    """Weight of a strip, V = - int mu g . C ds0 [J], linear in the control points.
-
-    It acts in full at any load factor. Parameters: strip, linear_density mu [kg/m],
-    acceleration g [m/s^2].
-    """
-
-    strip: str
-    linear_density: float
-    acceleration: tuple[float, float]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class BodyGravity(Potential):
-    """Weight of a body at its centre, V = - m g . r [J]; in full at any load factor."""
-
-    body: str
-    mass: float
-    acceleration: tuple[float, float]
+        found = [(axis, part, kind) for axis, part in enumerate(self.force) if any(self.force)]
+        return [*found, (2, self.moment, MOMENT)] if self.moment else found
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -140,8 +140,11 @@ class Bending(StrainEnergy):
 
     def rigidity_at(self, degree: int, u: Array) -> Array:
         """Return the rigidity at u (P,) of a strip of that degree [N m^2]."""
-        curl = Curl(poisson_ratio=0.0, clamped=0.0, flattening=0.0) if self.curl is None else self.curl
-        stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u.tobytes(), curl.reach, self.roots)
+        stiffer: Array = np.ones(len(u))
+        if self.curl is not None or any(self.roots):
+            curl = self.curl or Curl(poisson_ratio=0.0, clamped=0.0, flattening=0.0)
+            nu = curl.poisson_ratio
+            stiffer = rigidity_of(curl.clamped, nu, degree, u.tobytes(), curl.reach, self.roots)
         if self.taper is not None:
             stiffer = stiffer * self.taper.second_moment(u)
         return self.flexural_rigidity * stiffer

@@ -30,23 +30,22 @@ def applied_force(
 
     body: None is the only one. at: point of the body (x, y) at rest [m]; None is its centre.
     """
-    acts_on = design.body_named(body)
+    acts_on, moment = design.body_named(body), 0.0
     if at is not None and follower:  # turned with its lever, its moment stays
         (x, y), (left, low) = at, next(each.centre for each in design.bodies if each.name == acts_on)
         moment = (x - left) * force[1] - (y - low) * force[0]
-        yield boundary.AppliedMoment(body=acts_on, moment=moment, history=history)
     elif at is not None:
         name = f"point {tuple(at)} of {acts_on}"
         yield Body(name=name, centre=np.array(at, dtype=float), joint=True, on=acts_on, turns=False)
         acts_on = name
-    yield boundary.AppliedForce(body=acts_on, force=force, history=history, follower=follower)
+    yield boundary.AppliedLoad(body=acts_on, force=force, moment=moment, history=history, follower=follower)
 
 
 def applied_moment(
     design: Design, moment: float, body: str | None = None, history: History = STEADY
 ) -> Iterator[Effect]:
     """Yield a moment [N m] on a body; None is the only body."""
-    yield boundary.AppliedMoment(body=design.body_named(body), moment=moment, history=history)
+    yield boundary.AppliedLoad(body=design.body_named(body), moment=moment, history=history)
 
 
 def tip_force(
@@ -69,16 +68,9 @@ def tip_force(
     whole = next((s for s in design.strips if s.name == strip and s.tip is None), None)
     if whole is None:
         raise InvalidParameter("strip", strip, "a strip with a free end")
-    frame = Body(name=_tip_of(strip), centre=np.asarray(whole.end, dtype=float), joint=True)
-    yield frame
-    yield boundary.AppliedForce(body=frame.name, force=force, history=history, follower=follower)
-    if moment != 0.0:
-        yield boundary.AppliedMoment(body=frame.name, moment=moment, history=history)
-
-
-def _tip_of(strip: str) -> str:
-    """Return the name of the frame at the free end of a strip."""
-    return f"tip of {strip}"
+    frame = f"tip of {strip}"
+    yield Body(name=frame, centre=np.asarray(whole.end, dtype=float), joint=True)
+    yield boundary.AppliedLoad(body=frame, force=force, moment=moment, history=history, follower=follower)
 
 
 def driven_displacement(

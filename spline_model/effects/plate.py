@@ -39,7 +39,6 @@ along the strip, as a curve of some degree follows it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -51,6 +50,8 @@ from spline_model.basis import gauss_legendre
 from spline_model.strip.laws import TERMS
 
 Array = NDArray[Any]
+Profile = tuple[complex, complex]
+"""Size A and reach l over L of g(s), both complex for a complex width."""
 
 ACROSS = 12
 """Even polynomials across the width, up to degree 2 ACROSS; factors stand to 1e-5 for b/L of 0.05 to 2."""
@@ -165,19 +166,11 @@ def _across(ratio: complex) -> tuple[Array, Array, Array, Array, complex]:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Profile:
-    """g(s) of a strip by its size A, its reach l over L, both complex for a complex width, and its Poisson
-    ratio."""
-
-    size: complex
-    reach: complex
-    poisson_ratio: float
-
-    def compliance(self, s: Array, filled: float = 1.0) -> Array:
-        """EI / R at s (P,); filled: part of the width that curls."""
-        square, share = self.poisson_ratio**2, self.size * (1.0 - _decay(s, self.reach))
-        return np.asarray((1.0 - square) / (1.0 - square * filled * share))
+def _compliance(profile: Profile, poisson_ratio: float, s: Array, filled: float = 1.0) -> Array:
+    """EI / R at s (P,) of a profile; filled: part of the width that curls."""
+    (size, reach), square = profile, poisson_ratio**2
+    share = size * (1.0 - _decay(s, reach))
+    return np.asarray((1.0 - square) / (1.0 - square * filled * share))
 
 
 def _decay(s: Array, reach: complex) -> Array:
@@ -192,15 +185,14 @@ def _decay(s: Array, reach: complex) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
+def _profile_of(ratio: complex, poisson_ratio: float) -> Profile:
     """Return the profile of a strip of width over length ``ratio`` [1]; it is computed once.
 
     Newton's method in log A and log l; of a complex ratio in the real part, and their rates for the rest.
     """
     if abs(ratio) < NARROWEST:
-        own, share = _profile_of(NARROWEST, poisson_ratio), ratio / NARROWEST
-        size, reach = 1.0 + (own.size - 1.0) * share, own.reach * share
-        return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
+        (size, reach), share = _profile_of(NARROWEST, poisson_ratio), ratio / NARROWEST
+        return 1.0 + (size - 1.0) * share, reach * share
     aim = 1.0 / np.array(plate_factors(ratio, poisson_ratio))
     logs = np.log([1.0, 0.2 * ratio.real])
     if poisson_ratio != 0.0:
@@ -215,7 +207,7 @@ def _profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
         if ratio.imag != 0.0:
             logs = logs + 1j * np.linalg.solve(_rates(logs, ratio.real, poisson_ratio), aim.imag)
     size, reach = np.exp(logs)
-    return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
+    return size, reach
 
 
 def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:
@@ -228,7 +220,7 @@ def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
     """1 / f_b and 1 / f_s of a profile."""
     s, weight = _graded(ratio, (0.0, 1.0), 16)
     size, reach = np.exp(logs)
-    c = _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio).compliance(s)
+    c = _compliance((size, reach), poisson_ratio, s)
     return np.array([weight @ c, 12.0 * weight @ (c * (s - 0.5) ** 2)])
 
 
@@ -326,5 +318,5 @@ def _projected(
     """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials; filled: part f of the width."""
     profile, (left, right) = _profile_of(filled * ratio, poisson_ratio), reach
     s, weight = _graded(filled * ratio.real, reach, 16 + most)
-    shares = weight * profile.compliance(s, filled) / (right - left)
+    shares = weight * _compliance(profile, poisson_ratio, s, filled) / (right - left)
     return np.asarray(shares @ legendre.legvander(2.0 * (s - left) / (right - left) - 1.0, most))

@@ -1,20 +1,20 @@
 """The names of the effects, and what each of them makes of a design.
 
-An entry is a function of the design and of the effect's own parameters that returns frozen
-effects. A new effect is such a function in a file of its own, and one line here.
+An entry is a frozen effect of all strips and bodies, or a function of the design and of the effect's own
+parameters that returns frozen effects. A new effect is such a function in a file of its own, and one line
+here.
 """
 
 from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from inspect import signature
 from typing import TYPE_CHECKING, Any
 
-from spline_model.basis import AxialModes, SlideModes
-from spline_model.effects import base, boundary, elastic, outside
-from spline_model.effects.elastic import Taper
+from spline_model.basis import SlideModes
+from spline_model.effects import base, elastic, outside
 from spline_model.errors import InvalidParameter, is_finite
 from spline_model.scene import Body, Effect
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from spline_model.design import Design, StripDesign
 
 Parameters = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
-Builder = Callable[..., Iterable[Effect | Body]]
-Vector = tuple[float, float]
+Builder = Callable[..., Any]
+"""Of one effect, or of frozen effects and frames of their own, which it yields."""
 
 ROOTS = "root_compliance"
 MONOLITHIC = 0.416
@@ -90,93 +90,28 @@ def _roots(design: Design, strip: StripDesign, reach: tuple[float, float]) -> tu
     return length * (reach[0] == 0.0), length * (reach[1] == 1.0 and strip.tip is not None)
 
 
-def _stretching(design: Design) -> Iterator[Effect]:
-    """Stretching of every strip: mixed, or by quadrature if the discretisation asks for it."""
-    grid = design.discretisation
+def _stretching(design: Design, stretches: bool = True) -> Iterator[Effect]:
+    """Stretching of every strip: mixed, or by quadrature if the discretisation asks for it.
+
+    stretches: whether they do; else they keep their length, the mixed form with zero compliance.
+    """
+    grid, slides = design.discretisation, design.discretisation.modes.count < design.discretisation.points - 1
     for strip, _, _ in design.pieces:
-        if grid.stretch != "consistent":
-            yield from _mixed(design, strip, 1.0 / strip.axial_rigidity)
+        given: dict[str, Any] = {"strip": strip.name, "natural_strain": design.pre_strain.get("strain", 0.0)}
+        given |= {"measure": grid.measure, "gauss_points": grid.quadrature}
+        if stretches and grid.stretch == "consistent":
+            if strip.taper is not None:
+                raise InvalidParameter("stretch", grid.stretch, f"mixed for the tapered {strip.name}")
+            yield elastic.Stretching(axial_rigidity=strip.axial_rigidity, **given)
             continue
-        if strip.taper is not None:
-            raise InvalidParameter("stretch", grid.stretch, f"mixed for the tapered {strip.name}")
-        yield elastic.Stretching(
-            strip=strip.name,
-            axial_rigidity=strip.axial_rigidity,
-            natural_strain=design.pre_strain.get("strain", 0.0),
-            measure=grid.measure,
-            gauss_points=grid.quadrature,
-        )
-
-
-def _inextensible(design: Design) -> Iterator[Effect]:
-    """Strips that keep their length: the mixed form with zero compliance."""
-    for strip, _, _ in design.pieces:
-        yield from _mixed(design, strip, 0.0)
-
-
-def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Effect]:
-    grid = design.discretisation
-    parts: list[tuple[float, AxialModes, Taper | None]] = [(compliance, grid.modes, strip.taper)]
-    slide = grid.slide * strip.flexural_rigidity / strip.length**2
-    if slide > 0 and grid.modes.count < grid.points - 1:
-        parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes), None))
-    for part, modes, taper in parts:
+        compliance = 1.0 / strip.axial_rigidity if stretches else 0.0
         yield elastic.MixedStretching(
-            strip=strip.name,
-            axial_compliance=part,
-            modes=modes,
-            taper=taper,
-            natural_strain=design.pre_strain.get("strain", 0.0),
-            gauss_points=grid.quadrature,
+            axial_compliance=compliance, modes=grid.modes, taper=strip.taper, **given
         )
-
-
-def _strip_inertia(design: Design) -> Iterator[Effect]:
-    """Translational inertia of every strip; without it strips are massless."""
-    for strip, _, _ in design.pieces:
-        yield base.StripInertia(strip=strip.name, linear_density=strip.linear_density)
-
-
-def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
-    """Rotary inertia of every strip's sections."""
-    for strip, _, _ in design.pieces:
-        yield base.SectionRotaryInertia(
-            strip=strip.name, rotary_density=strip.density * strip.second_moment_of_area
-        )
-
-
-def _body_inertia(design: Design) -> Iterator[Effect]:
-    """Inertia of every body."""
-    for body in design.bodies:
-        yield base.BodyInertia(body=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
-
-
-def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Effect]:
-    """Weight of every strip and body; acceleration [m/s^2]."""
-    for strip, _, _ in design.pieces:
-        yield boundary.StripGravity(
-            strip=strip.name, linear_density=strip.linear_density, acceleration=acceleration
-        )
-    for body in design.bodies:
-        yield boundary.BodyGravity(body=body.name, mass=body.mass, acceleration=acceleration)
-
-
-def _strip_damping(design: Design, relaxation_time: float) -> Iterator[Effect]:
-    """Kelvin-Voigt damping of every strip; relaxation_time [s]."""
-    for strip, _, _ in design.pieces:
-        yield base.StripDamping(strip=strip.name, relaxation_time=relaxation_time)
-
-
-def _strip_drag(design: Design, rate: float) -> Iterator[Effect]:
-    """Mass-proportional drag on every strip; rate [1/s]."""
-    for strip, _, _ in design.pieces:
-        yield base.StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
-
-
-def _body_damping(design: Design, translation: float = 0.0, rotation: float = 0.0) -> Iterator[Effect]:
-    """Damper between every body and the ground; translation [N s/m], rotation [N m s]."""
-    for body in design.bodies:
-        yield base.BodyDamper(body=body.name, translation=translation, rotation=rotation)
+        if slides and grid.slide > 0:
+            slide = grid.slide * strip.flexural_rigidity / strip.length**2
+            modes = SlideModes(basis=grid.spline, axial=grid.modes)
+            yield elastic.MixedStretching(axial_compliance=1.0 / slide, modes=modes, **given)
 
 
 def root_length(root: float | str = "monolithic") -> float:
@@ -196,15 +131,15 @@ def root_length(root: float | str = "monolithic") -> float:
 
 REGISTRY: dict[str, Builder] = {
     "bending": _bending,
-    "stretching": _stretching,
-    "inextensible": _inextensible,
-    "strip_inertia": _strip_inertia,
-    "section_rotary_inertia": _section_rotary_inertia,
-    "body_inertia": _body_inertia,
-    "gravity": _gravity,
-    "strip_damping": _strip_damping,
-    "strip_drag": _strip_drag,
-    "body_damping": _body_damping,
+    "stretching": lambda design: _stretching(design),
+    "inextensible": lambda design: _stretching(design, stretches=False),
+    "strip_inertia": base.StripInertia,
+    "section_rotary_inertia": base.SectionRotaryInertia,
+    "body_inertia": base.BodyInertia,
+    "gravity": base.Gravity,
+    "strip_damping": base.StripDamping,
+    "strip_drag": base.StripDrag,
+    "body_damping": base.BodyDamper,
     **outside.SEVERAL,
     # bending and stretching take these up: clamps that hold sections flat over the width, sections that
     # flatten as wide strips bend (M(kappa) by Ashwell's law), and roots of all clamped ends
@@ -261,12 +196,13 @@ def build(names: Sequence[str], parameters: Parameters, design: Design) -> list[
     """
     built: list[Effect | Body] = []
     for name in names:
-        given = parameters.get(name)
+        given, make = parameters.get(name), REGISTRY[name]
+        of_all = isinstance(make, type)
         for each in ({},) if given is None else [given] if isinstance(given, Mapping) else given:
             try:
-                built += REGISTRY[name](design, **each)
+                built += [make(**each)] if of_all else make(design, **each)
             except TypeError as error:
-                known = list(signature(REGISTRY[name]).parameters)[1:]
+                known = list(signature(make).parameters)[0 if of_all else 1 :]
                 expected = "only " + ", ".join(known) if known else "none"
                 raise InvalidParameter(f"parameters of {name}", sorted(each), expected) from error
     return built

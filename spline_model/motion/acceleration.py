@@ -42,7 +42,7 @@ from spline_model.strip.element import (
     STRETCHING,
     WEIGHT,
 )
-from spline_model.strip.ends import move_points, place_in_frames, to_ends, turned_frame
+from spline_model.strip.ends import move_points, place_in_frames, rates_of_end, to_ends, turned_frame
 from spline_model.strip.points import (
     add_mode,
     add_slopes,
@@ -89,13 +89,7 @@ def _add_ties(s, tied, sharpness, grid, shape, strips, local, room):
     """
     lanes, along, d1, d2 = local.lanes[s], strips.along[s], shape.curve[0], shape.curve[1]
     n, gauss = d1.shape[0], along.shape[0]
-    tx, ty, rest, mode = (
-        lanes[HESSIAN_AT],
-        lanes[HESSIAN_AT + 1],
-        lanes[HESSIAN_AT + 2],
-        lanes[HESSIAN_AT + 3],
-    )
-    rates = four(lanes, HESSIAN_AT + 4)
+    (tx, ty, rest, mode), rates = four(lanes, HESSIAN_AT), four(lanes, HESSIAN_AT + 4)
     curve_at(room.along, d1, d2, rates)
     for p in range(gauss):
         inverse, weight = 1.0 / lanes[SPEED_AT, p], shape.rule[WEIGHT, p]
@@ -146,14 +140,8 @@ def _set_mass(e, f, m, ends, tip, root, first, h):
 def _set_drift(s, at, w, strips, ends, drift):
     """Accelerations (8,) of the end points that the rates make."""
     for e in range(2):
-        body, stick, lever, inner, outer = (
-            strips.tips[s] if e else strips.roots[s],
-            2 * e,
-            8 - 4 * e,
-            2 * e,
-            6 - 2 * e,
-        )
-        spin = w[3 * body + 2] if body >= 0 else 0.0
+        inner, outer, stick, lever = 2 * e, 6 - 2 * e, 2 * e, 8 - 4 * e
+        _, _, spin = rates_of_end(s, e, w, strips)
         square, both = spin * spin, 2.0 * spin * w[at + e]
         drift[outer], drift[outer + 1] = -square * ends[lever + 3], square * ends[lever + 2]
         drift[inner] = -square * ends[lever + 1] - both * ends[stick + 1]
@@ -287,10 +275,8 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
     for s in range(strips.roots.size):
         at, tied = poses + s * (own + modes), grid.tied[s]
         a = y[at + own : at + own + modes]
-        for e in range(2):
-            turned_frame(
-                strips.tips[s] if e else strips.roots[s], y, grid.frames[s, e], room.turns, room.ends[e]
-            )
+        turned_frame(strips.roots[s], y, grid.frames[s, 0], room.turns, room.ends[0])
+        turned_frame(strips.tips[s], y, grid.frames[s, 1], room.turns, room.ends[1])
         place_in_frames(s, y[at : at + own], room.ends[0], room.ends[1], strips, local)
         _push(s, a, grid, shape, strips, local)
         _set_drift(s, at + own - 2, w, strips, local.map[s], room.drift[s])

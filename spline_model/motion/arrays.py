@@ -11,7 +11,6 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import StripDamping
 from spline_model.frames import Frames
 from spline_model.motion.start import Motion
 from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE, Reduced, in_units
@@ -57,26 +56,11 @@ class Masses(NamedTuple):
     def of(cls, motion: Motion, model: Reduced) -> Masses:
         """Return those of a motion of the reduced mechanism."""
         layout, length, energy = model.system.layout, model.length, model.energy
-        poses, strips, loads, drives = len(model.bodies.rest), model.strips, motion.loads, motion.drives
-        unit, begin = model.system.scales.pose**2 / energy, layout.poses.start
-        own = layout.poses.stop - begin
-        inertia, drag = np.zeros((2, poses))
-        places = [layout.strip(name) for name in layout.strips]
-        order, damped = (
-            model.shape.order,
-            motion.system.drag if motion.system.drag.size else np.zeros_like(motion.system.mass),
-        )
-        for acts, whole in ((inertia, motion.system.mass), (drag, damped)):
-            acts[:own] = np.diag(whole)[layout.poses] * np.tile(unit, own // 3)
-        across = in_units(model.system, damped[layout.poses, layout.poses])
-        across = across - np.diag(np.diag(across))
-        points, damping = (
-            np.array([whole[at, at][::2, ::2][np.ix_(order, order)] for at in places]) * (length**2 / energy)
-            for whole in (motion.system.mass, damped)
-        )
+        strips, loads, drives, mass = model.strips, motion.loads, motion.drives, motion.system.mass
+        drag = motion.system.drag if motion.system.drag.size else np.zeros_like(mass)
+        (inertia, points, _), (friction, damping, across) = (_parts(model, each) for each in (mass, drag))
         basis = model.shape.tables[FIRST : SECOND + 1]
         pairs = [np.einsum("gi,gj->gij", one, other) for one in basis for other in basis]
-        time = {e.strip: e.relaxation_time for e in model.system.scene.of(StripDamping)}
         c = strips.compliance
         small = c < LEAST_COMPLIANCE
         outer = c.shape[1] if small[:, strips.split :].any() else strips.split if small.any() else 0
@@ -84,21 +68,31 @@ class Masses(NamedTuple):
         size = np.where(drives.turns == 1, 1.0, length)
         return cls(
             inertia=inertia,
-            drag=drag,
+            drag=friction,
             points=points,
             damping=damping,
-            relaxation=np.array([time.get(name, 0.0) for name in layout.strips]),
-            pairs=np.stack(pairs, axis=1).reshape(-1, 4, len(order) ** 2),
+            relaxation=np.full(len(layout.strips), model.system.relaxation_time),
+            pairs=np.stack(pairs, axis=1).reshape(len(pairs[0]), 4, -1),
             loads=loads._replace(value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy),
-            load_at=loads.coordinate - begin,
+            load_at=loads.coordinate - layout.poses.start,
             drives=drives._replace(origin=drives.origin / size, target=drives.target / size),
-            drive_at=drives.coordinate - begin,
+            drive_at=drives.coordinate - layout.poses.start,
             gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
             across=across if across.any() else across[:0, :0],
             frames=model.bodies.frames,
             outer=outer,
             free_from=len(model.system.scene.bodies),
         )
+
+
+def _parts(model: Reduced, matrix: Array) -> tuple[Array, Array, Array]:
+    """Of mass or drag: diagonal (Q,) of the bodies, blocks (S, n, n) of the strips along one axis,
+    and what there is between bodies."""
+    layout, order = model.system.layout, model.shape.order
+    bodies, own = np.zeros(len(model.bodies.rest)), in_units(model.system, matrix[layout.poses, layout.poses])
+    bodies[: len(own)] = np.diag(own)
+    blocks = [matrix[at, at][::2, ::2][np.ix_(order, order)] for at in map(layout.strip, layout.strips)]
+    return bodies, np.array(blocks) * (model.length**2 / model.energy), own - np.diag(np.diag(own))
 
 
 class State(NamedTuple):

@@ -86,22 +86,11 @@ def _accept(h, active, state, arrays, masses, work):
 
 
 @kernel()
-def look(state, arrays):
-    """Map and curve of a state that is given by its coordinates."""
-    strips, shape, local = arrays.strips, arrays.shape, arrays.local
-    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
-    for s in range(strips.roots.size):
-        at = state.rate.size + s * (own + modes)
-        place_points(s, state.y[at : at + own], state.y, strips, local)
-        take_strains(s, shape, strips, local)
-        keep_curve(s, strips, local, state)
-
-
-@kernel()
 def store(state, arrays, masses, row):
-    """A record: what ``State.record`` holds, and energies.
+    """Keep map and curve of a state that is given by its coordinates, and fill its record.
 
-    These are, in EI/L: kinetic energy, potential of the weight, energy of strains and springs, work, losses.
+    It is what ``State.record`` holds, and energies in EI/L: kinetic energy, potential of the weight, energy
+    of strains and springs, work, losses.
     """
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     out, spare, n, at = arrays.space.out, arrays.space.states[SPARE], shape.order.size, state.record.size
@@ -119,6 +108,7 @@ def store(state, arrays, masses, row):
         a = spare[first + own : first + own + modes]
         place_points(s, state.y[first : first + own], state.y, strips, local)
         take_strains(s, shape, strips, local)
+        keep_curve(s, strips, local, state)
         forces_of_strains(s, strips, local, a)
         evaluate_residual(s, a, n, shape, strips, local, out)
         kinetic += 0.5 * quadratic(masses.points[s], state.velocity[s])
@@ -195,7 +185,7 @@ class Stepper(Moves):
         self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
         self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
         self.width = self.state.record.size + ENERGIES
-        look(self.state, self._arrays)
+        self.record()
 
     def _begin(self) -> None:
         """Make what a motion of the model has at all times."""

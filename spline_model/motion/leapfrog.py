@@ -27,11 +27,12 @@ from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
 from spline_model.motion import energy_consistent
 from spline_model.motion.acceleration import accelerate
-from spline_model.motion.arrays import Masses, Places, State, sizes_of, zeros
+from spline_model.motion.arrays import Masses, Places, sizes_of, zeros
 from spline_model.motion.energy_consistent import forward, store
 from spline_model.motion.moves import STEP
 from spline_model.motion.start import Motion, Start
 from spline_model.reduced.model import Reduced
+from spline_model.reduced.states import coordinates_by
 from spline_model.strip.compiled import kernel, part
 from spline_model.strip.ends import move_points, place_points
 
@@ -212,8 +213,10 @@ class Stepper(energy_consistent.Stepper):
         model, masses, state = self.model, self._masses, self.state
         grid = _Grid.of(model, masses)
         self.stages = 1 if grid.outer else 2
-        w, room = _rates_of(model, masses, state), _Room.of(model, masses, grid)
-        self.record()  # fills what is given along the strips
+        w = np.zeros(model.size)
+        if start.v.any():
+            w[:] = np.linalg.lstsq(coordinates_by(model, state.y), start.v, rcond=None)[0]
+        room = _Room.of(model, masses, grid)
         self._start = start
         self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
 
@@ -248,9 +251,7 @@ def critical_step(motion: Motion, z: Array) -> float:
 def highest_frequency(motion: Motion, z: Array) -> float:
     """Return the highest circular frequency at a state and at rest [rad/s]."""
     system = motion.system
-    return math.sqrt(
-        max(linear_modes(system, state, motion.system.mass)[0][-1] for state in (z, system.rest))
-    )
+    return math.sqrt(max(linear_modes(system, state)[0][-1] for state in (z, system.rest)))
 
 
 def require_explicit(motion: Motion) -> None:
@@ -262,22 +263,3 @@ def require_explicit(motion: Motion) -> None:
     blocks = [motion.system.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):
         raise InvalidParameter("integrator", NAME, "energy for strips without mass")
-
-
-def _rates_of(model: Reduced, masses: Masses, state: State) -> Array:
-    """Rates (Y,) of a state's coordinates by the velocities of its control points."""
-    w, strips, own = np.zeros(model.size), model.strips, 2 * len(model.shape.order) - 6
-    w[: len(state.rate)] = state.rate
-    for s, velocity in enumerate(state.velocity):
-        at = model.places(s)[0].start
-        w[at : at + own - 2] = velocity[: own - 2]
-        for e, body in enumerate((strips.roots[s], strips.tips[s])):
-            inner, outer = own - 2 + 2 * e, own + 4 - 2 * e
-            along, end = state.map[s, 2 * e : 2 * e + 2], velocity[outer : outer + 2]
-            chord, square = velocity[inner : inner + 2] - end, along @ along
-            w[at + own - 2 + e] = along @ chord / square
-            if body >= masses.free_from:  # a free end is its own body
-                turn = along[0] * chord[1] - along[1] * chord[0]
-                turn /= square * state.y[at + own - 2 + e]
-                w[3 * body : 3 * body + 3] = *end, turn
-    return w

@@ -228,28 +228,28 @@ def _solve(h, poses, masses, arrays, tolerance, counters):
 
     dx is the bodies' change, kept apart as their inertia would drown in its round-off.
     """
-    space, norm, before, fresh = arrays.space, math.inf, math.inf, False
+    norm = before = math.inf
     for i in range(poses.dx.size):
         poses.dx[i] = 0.0
     copy(poses.y, poses.trial)
-    copy(poses.pull, space.vectors[FORCE])
+    copy(poses.pull, arrays.space.vectors[FORCE])
     poses.energy[1] = poses.energy[0]
-    for trial in range(-1, MOST_ITERATIONS):
-        strain = 0.0
-        if trial >= 0:
-            fresh, before = trial == 0 or norm > POOR * before, norm
-            counters[FACTORISATIONS] += fresh
-            strain = _evaluate(fresh, poses, arrays)
-        norm = max(strain, _balance(h, poses, masses, space)) if strain == strain else math.inf
-        if trial >= 0 and (norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)):
+    if not _balance(h, poses, masses, arrays.space) < 1e12:
+        return False
+    if not solve_rows(poses.x.size, poses.system, poses.x):
+        return False
+    _move_all(0.0, poses, arrays)
+    _bend_on(h, poses)
+    for trial in range(MOST_ITERATIONS):
+        fresh, before = trial == 0 or norm > POOR * before, norm
+        counters[FACTORISATIONS] += fresh
+        strain = _evaluate(fresh, poses, arrays)
+        norm = max(strain, _balance(h, poses, masses, arrays.space)) if strain == strain else math.inf
+        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
             return True
         if not norm < 1e12 or not solve_rows(poses.x.size, poses.system, poses.x):
             return False
-        _move_all(0.0 if trial < 0 else 1.0, poses, arrays)
-        if trial < 0:
-            _bend_on(h, poses)
-            norm = math.inf
-            continue
+        _move_all(1.0, poses, arrays)
         counters[NEWTON] += 1
         small = norm <= NEARLY if fresh else norm <= CLOSE and norm * norm <= AFTER * before
         if small and arrays.strips.coupled == 0:

@@ -70,16 +70,6 @@ class Steps(NamedTuple):
         steps = math.ceil(steps / every) * every
         return cls(duration / steps, steps, every)
 
-    @property
-    def records(self) -> int:
-        """Records of a whole run, the start among them."""
-        return self.steps // self.every + 1
-
-    @property
-    def spacing(self) -> float:
-        """Of the records [s]."""
-        return self.step * self.every
-
 
 class Moves:
     """A scene in motion, advanced in steps that are halved at need.
@@ -110,10 +100,6 @@ class Moves:
         """Return to a state that was kept: arrays in the order, units and shapes of ``kept``."""
         for array, value in zip(self.state, kept, strict=True):
             array[:] = value
-
-    def advance(self, time: float, duration: float) -> bool:
-        """Advance from ``time`` [s] by ``duration`` [s], in halves at need; return whether it was done."""
-        return self.take(time, duration, 0, 1, 2, np.zeros((0, self.width))) == 1
 
     def take(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps ``begin`` ... ``end`` - 1 after a time [s], filling records (R, W).
@@ -213,7 +199,7 @@ def carry(stepper: Moves, run: Steps, *, laps: Laps, settings: dict[str, Any], *
 
     A run that says why it stopped has not converged. laps: a stopwatch; known: other fields.
     """
-    records = np.empty((run.records, stepper.width))
+    records = np.empty((run.steps // run.every + 1, stepper.width))
     kept, message = _fill(stepper, run, records)
     laps.lap("solve")
     poses, rows = stepper.shown(records[:kept])
@@ -223,7 +209,7 @@ def carry(stepper: Moves, run: Steps, *, laps: Laps, settings: dict[str, Any], *
     return Trajectory(
         status=Status.NOT_CONVERGED if message else Status.CONVERGED,
         message=message,
-        time=np.arange(0.0, kept) * run.spacing,
+        time=np.arange(0.0, kept) * run.step * run.every,
         bodies={b.name: poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.own_bodies)},
         kinetic_energy=rows[:, KINETIC],
         strain_energy=rows[:, STRAIN],
@@ -241,40 +227,38 @@ def carry(stepper: Moves, run: Steps, *, laps: Laps, settings: dict[str, Any], *
 
 def _fill(stepper: Moves, run: Steps, records: Array) -> tuple[int, str]:
     """Fill the records (R, W) of a run; returns how many are good, and why it stopped, if it did."""
-    step, every, duration, kept = run.step, run.every, run.steps * run.step, 0
+    duration, kept = run.steps * run.step, 1
     energy = stepper.motion.system.scales.energy
-    for begin, end in pairwise((0.0, *stepper.motion.event_times(duration, step), duration)):
-        stepper.switch(begin, min(end - begin, step))
+    for begin, end in pairwise((0.0, *stepper.motion.event_times(duration, run.step), duration)):
+        stepper.switch(begin, min(end - begin, run.step))
         if begin == 0.0:  # with the drives that hold from the start on
-            records[0], kept = stepper.record(), 1
-        for time, to, number, last in _pieces(begin, end, run):
-            if last > number:
-                places = slice(number // every + 1, last // every + 1)
-                done = stepper.take(0.0, step, number, last, every, records[places])
-                solved, reached, kept = done == last, done * step, done // every + 1
-            else:
-                solved, reached = stepper.advance(time, to - time), time
-                if solved and to == last * step and last % every == 0:
-                    records[last // every], kept = stepper.record(), last // every + 1
+            records[0] = stepper.record()
+        for time, step, first, last, every in _pieces(begin, end, run):
+            done = stepper.take(
+                time, step, first, last, every, records[first // every + 1 : last // every + 1]
+            )
+            kept = max(kept, done // every + 1)
             good = first_gain(stepper.shown(records[:kept])[1], energy, stepper.most_gain)
-            if good < kept or not solved:
-                return good, stepper.stopped(good * every * step, reached, grows=good < kept)
+            if good < kept or done < last:
+                due, reached = good * run.every * run.step, time + done * step
+                return good, stepper.stopped(due, reached, grows=good < kept)
     return kept, ""
 
 
-def _pieces(begin: float, end: float, run: Steps) -> Iterator[tuple[float, float, int, int]]:
-    """The way from one instant to another [s]: from, to, and the first and last step's end of whole steps.
+def _pieces(begin: float, end: float, run: Steps) -> Iterator[tuple[float, float, int, int, int]]:
+    """The way from one instant to another [s], as arguments of ``Moves.take``.
 
-    Of a part of a step, which ends in the last one or before it, both are the same.
+    It is whole steps, and parts of steps before and behind them, which are none of the records where they end
+    inside a step.
     """
-    time, step = begin, run.step
-    close = SAME * step
+    time, close = begin, SAME * run.step
     while end - time > close:
-        number, last = (math.floor((instant + close) / step) for instant in (time, end))
-        if last > number and abs(time - number * step) <= close:
-            to = last * step
+        number, last = (math.floor((instant + close) / run.step) for instant in (time, end))
+        if last > number and abs(time - number * run.step) <= close:
+            yield 0.0, run.step, number, last, run.every
+            time = last * run.step
         else:
-            number = last = number + 1
-            to = last * step if end > last * step - close else end
-        yield time, to, number, last
-        time = to
+            grid = (number + 1) * run.step
+            to, every = (grid, run.every) if end > grid - close else (end, run.steps + 1)
+            yield time - number * (to - time), to - time, number, number + 1, every
+            time = to

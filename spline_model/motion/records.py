@@ -28,27 +28,17 @@ QUIET = 1e-6
 """Energies below this, in EI/L, are not told from this much: their gain is round-off."""
 
 
-def energy_gain(rows: Array, unit: float) -> Array:
-    """Return the gain of the balance T + V - work + dissipated at each record over the run's energy, (R,)
-    [1].
-
-    rows (R, 5) as named above; unit: EI/L in them. The energy is the largest of the balance's parts so far,
-    as a run may start at rest, and the weight's zero is arbitrary.
-    """
-    stored = rows[:, KINETIC] + rows[:, STRAIN]
-    fallen = rows[:, WEIGHT] - rows[0, WEIGHT]
-    balance = stored + fallen - rows[:, WORK] + rows[:, DISSIPATED]
-    largest = np.maximum(np.abs(stored), np.abs(fallen))
-    for k in (WORK, DISSIPATED):
-        largest = np.maximum(largest, np.abs(rows[:, k]))
-    scale = np.maximum(np.maximum.accumulate(largest), QUIET * unit)
-    return np.asarray((balance - balance[0]) / scale)
-
-
 def first_gain(rows: Array, unit: float, most: float) -> int:
-    """Return the number of the first of the rows (R, 5) with a relative gain above ``most``, or R; unit: EI/L
-    [J]."""
-    gained = np.flatnonzero(~(energy_gain(rows, unit) <= most))
+    """Return the number of the first of the rows (R, 5) of energies [J] with a gain above ``most``, or R.
+
+    It is that of the balance T + V - work + dissipated over the run's energy [1], the largest of the
+    balance's parts so far, as a run may start at rest, and the weight's zero is arbitrary. unit: EI/L [J].
+    """
+    stored, fallen = rows[:, KINETIC] + rows[:, STRAIN], rows[:, WEIGHT] - rows[0, WEIGHT]
+    balance = stored + fallen - rows[:, WORK] + rows[:, DISSIPATED]
+    parts = np.abs((stored, fallen, rows[:, WORK], rows[:, DISSIPATED])).max(axis=0)
+    scale = np.maximum(np.maximum.accumulate(parts), QUIET * unit)
+    gained = np.flatnonzero(~((balance - balance[0]) / scale <= most))
     return int(gained[0]) if gained.size else len(rows)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, MixedStretching, StripDamping
+from spline_model.effects import Bending, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
@@ -54,10 +54,7 @@ class Motion:
     @property
     def relaxation(self) -> Array:
         """Relaxation time of the axial modes (M,) [s]."""
-        scene = self.system.scene
-        times = {effect.strip: effect.relaxation_time for effect in scene.of(StripDamping)}
-        modes = scene.of(MixedStretching)
-        return np.array([times.get(effect.strip, 0.0) for effect in modes for _ in range(effect.modes.count)])
+        return np.full(len(self.rigidity), self.system.relaxation_time)
 
     @property
     def damped(self) -> bool:
@@ -140,8 +137,7 @@ class Motion:
         count, end, size = len(mass), system.layout.multiplier_start, system.layout.size
         unit, gradient, hessian = system.scales.unit[:count], np.empty(size), np.empty((size, size))
         free = np.append(z[:count], np.zeros(size - count))
-        evaluate(system, free, 1.0, gradient, hessian)
-        free[count:end] = self.rigidity @ gradient[count:end]
+        free[count:end] = self.rigidity @ strips_of(self.system).strains(free)
         evaluate(system, free, 1.0, gradient, hessian)
         rows = np.append(count + np.flatnonzero(np.diag(self.rigidity) == 0.0), np.arange(end, size))
         jacobian, force, drift = hessian[rows][:, :count].copy(), -gradient[:count], np.zeros(len(rows))

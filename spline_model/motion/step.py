@@ -32,7 +32,7 @@ LONGEST_TURN = 1.5
 
 
 @part()
-def prepare(time, h, state, strips, masses, work):
+def _prepare(time, h, state, strips, masses, work):
     """What does not change in a step: inertia, drag and loads on the control points, and loads on bodies."""
     n = masses.points.shape[1]
     for i in range(masses.inertia.size):
@@ -187,7 +187,7 @@ def _add_strip(s, h, state, arrays, masses, work):
 
 
 @called()
-def assemble(h, state, arrays, masses, work):
+def _assemble(h, state, arrays, masses, work):
     """Return the residual of the step dy, and its tangent at the bodies with the strips condensed; the
     largest residual.
 
@@ -339,7 +339,7 @@ def newton(time, h, active, state, arrays, masses, tolerance, work, counters):
     Where the way that velocities lead to ends in none, the step begins where the last one ended. Of parts
     whose mass is next to none velocities say nothing: they ring about the equilibrium that the parts follow.
     """
-    prepare(time, h, state, arrays.strips, masses, work)
+    _prepare(time, h, state, arrays.strips, masses, work)
     for ahead in (h, 0.0):
         _guess_step(ahead, state, arrays.strips, masses, work)
         for d in range(masses.drive_at.size):
@@ -360,7 +360,7 @@ def _corrected(h, state, arrays, masses, tolerance, work, counters):
     """
     before, size, last = math.inf, math.inf, math.inf
     for _ in range(MOST_ITERATIONS):
-        norm = assemble(h, state, arrays, masses, work)
+        norm = _assemble(h, state, arrays, masses, work)
         if not norm < 1e12:
             return False
         rounded = size <= ROUND_OFF and size > 0.5 * last

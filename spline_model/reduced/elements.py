@@ -267,14 +267,12 @@ class Elements(Followed):
     def compiled_rows(self, factors: Array, answer: Answer) -> dict[str, Any]:
         """Return the same from the answer at load factors (S,) [1]."""
         model = self.model
-        z = np.zeros((len(factors), len(self.gradient)))
+        z = np.empty((len(factors), len(self.gradient)))
         z[:, self.place], z[:, self.held] = answer.y, answer.reaction
-        poses = answer.y[:, : 3 * len(model.system.scene.bodies)].copy()
-        poses[:, 0::3] *= model.length
-        poses[:, 1::3] *= model.length
+        count = len(model.system.scene.bodies)
         return {
             "load_factor": factors,
-            "poses": poses,
+            "poses": answer.y[:, : 3 * count] * np.array([model.length, model.length, 1.0] * count),
             "reactions": answer.reaction * (model.energy / model.drive_length),
             "z": z,
             "stiffness": answer.stiffness * model.energy,

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.reduced.arrays import Arrays, Route
+from spline_model.frames import Frames
+from spline_model.reduced.arrays import Arrays, Bodies, Route
 from spline_model.reduced.equilibrium import ITERATIONS
 from spline_model.reduced.numbers import Designs
 from spline_model.reduced.path import follow
+from spline_model.reduced.preload import Preload
 from spline_model.strip.compiled import called, copy, kernel
-from spline_model.strip.element import (
-    CURVATURE,
-    FORCE_AT,
-    MOMENT_AT,
-    ON_POINTS,
-    POINTS,
-    Local,
-    Shape,
-    Strips,
-)
+from spline_model.strip.element import FORCE_AT, MOMENT_AT, Local, Shape, Strips
 from spline_model.strip.ends import place_points
 from spline_model.strip.points import forces_at
 
@@ -31,28 +24,22 @@ Array = NDArray[Any]
 class Stations(NamedTuple):
     """P stations along the strips at which strains [1] are computed, in place of the Gauss points.
 
-    along (D, S, P, 11 + K) as in ``Strips``; fibre (D, S, 2): strain of a force and of a moment; strips,
-    shape, local: of the stations, the former with the numbers of the design at hand.
+    along (D, S, P, 11 + K) as in ``Strips``, D = 0 if no strain is asked for; fibre (D, S, 2): strain of a
+    force and of a moment; shape, local: of the stations.
     """
 
     along: Array
     fibre: Array
-    strips: Strips
     shape: Shape
     local: Local
-
-    @classmethod
-    def none(cls, arrays: Arrays) -> Self:
-        """Those of paths of which no strain is asked for."""
-        along, fibre = np.zeros((0, 0, 0, 0)), np.zeros((0, 0, 0))
-        return cls(along, fibre, arrays.strips, arrays.shape, arrays.local)
 
 
 class Share(NamedTuple):
     """Part of the designs that one thread solves: every ``stride``-th from ``begin`` on, into ``rows`` (D,).
 
-    growing: the route along which weight and pre-strain grow first, without factors if there are none; place:
-    of the reported body's pose; stations: without ``along`` if no strain is computed; results: the
+    force (D, 2, Q) load and weight, gain (D, S, K), as in ``Bodies`` and ``Strips``; preload: that of all
+    designs, with D in front of curvature, numbers, bodies and hung; growing: the route along which weight and
+    pre-strain grow first, without factors if there are none; place: of the reported body's pose; results: the
     dimensionless arrays of ``Batch``, states, centre, torque, stiffness, energy, strain, inertia,
     moment_defect, iterations.
     """
@@ -61,6 +48,9 @@ class Share(NamedTuple):
     begin: int
     stride: int
     designs: Designs
+    force: Array
+    gain: Array
+    preload: Preload
     stations: Stations
     growing: Route
     place: int
@@ -68,45 +58,37 @@ class Share(NamedTuple):
 
 
 @called()
-def _take_design(i, designs, preload, bodies, strips, route, local):
-    """Put the i-th design's numbers where a path takes them from."""
-    start, hung, fallen = designs.start[i], 0.0, 0.0
-    for d in range(bodies.held.size):
-        route.origin[d], route.target[d] = start[bodies.held[d]], designs.target[i, d]
-    for k in range(bodies.rest.size):
-        bodies.rest[k], bodies.load[k] = start[k], designs.force[i, 0, k]
-        bodies.weight[k] = preload.bodies[k] = designs.force[i, 1, k]
-        fallen += bodies.weight[k] * start[k]
-    for k in range(bodies.springs.shape[0]):
-        copy(designs.springs[i, k], bodies.springs[k])
-    for f in range(bodies.frames.place.shape[0]):
-        copy(designs.levers[i, f], bodies.frames.lever[f])
-    modes, own = strips.compliance.shape[1], strips.numbers.shape[1] - ON_POINTS - 6
-    for s in range(strips.roots.size):
-        for k in range(strips.numbers.shape[1]):
-            strips.numbers[s, k] = preload.numbers[s, k] = designs.numbers[i, s, k]
-        for k in range(modes):
-            strips.compliance[s, k] = designs.compliance[i, s, k]
-            if k >= strips.coupled:
-                strips.gain[s, k] = 1.0 / designs.compliance[i, s, k]
-        for p in range(strips.along.shape[1]):
-            copy(designs.along[i, s, p], strips.along[s, p])
-            preload.curvature[0, s, p] = designs.rest[i, s, p]
-            preload.curvature[1, s, p] = strips.along[s, p, CURVATURE]
-        at = bodies.rest.size + s * (own + modes)
-        place_points(s, start[at : at + own], start, strips, local)
-        for k in range(own + 6):
-            hung += strips.numbers[s, ON_POINTS + k] * local.nodal[s, POINTS, k]
-    preload.hung[0], preload.hung[1] = hung, hung + fallen
+def _strips_of(i, along, share, strips):
+    """Strips of the i-th design, with what is along them."""
+    designs = share.designs
+    return Strips(
+        along, designs.compliance[i], share.gain[i], designs.numbers[i], strips.roots, strips.tips,
+        strips.split, strips.coupled, strips.outer, strips.measure,
+    )  # fmt: skip
 
 
 @called()
-def _largest_strain(i, y, poses, stations):
+def _arrays_of(i, share, route, arrays):
+    """The mechanism of the i-th design, and where it stands at the begin of the route."""
+    designs, same = share.designs, arrays.bodies
+    start = designs.start[i]
+    for d in range(same.held.size):
+        route.origin[d], route.target[d] = start[same.held[d]], designs.target[i, d]
+    bodies = Bodies(
+        start[: same.rest.size], share.force[i, 0], share.force[i, 1], same.free, same.held, same.driven,
+        designs.springs[i], Frames(same.frames.place, designs.levers[i]),
+    )  # fmt: skip
+    strips = _strips_of(i, designs.along[i], share, arrays.strips)
+    return Arrays(bodies, strips, arrays.shape, arrays.local, arrays.space)
+
+
+@called()
+def _largest_strain(i, y, poses, strips, stations):
     """Largest |N / (EA)| + |M| d / (2 EI) of the i-th design's strips, by parabolas between their stations.
 
     Plane sections.
     """
-    strips, shape, local = stations.strips, stations.shape, stations.local
+    shape, local = stations.shape, stations.local
     modes, count = strips.compliance.shape[1], strips.roots.size
     own = (y.size - poses) // count - modes
     largest = 0.0
@@ -127,37 +109,40 @@ def _largest_strain(i, y, poses, stations):
 
 
 @kernel()
-def follow_all(share, route, judged, preload, arrays, tolerance, answer):
+def follow_all(share, route, judged, arrays, tolerance, answer):
     """Follow the paths of all designs of a share, as ``follow`` does that of a mechanism."""
-    rows, designs, growing, place = share.rows, share.designs, share.growing, share.place
-    bodies, strips, local, stations = arrays.bodies, arrays.strips, arrays.local, share.stations
+    rows, designs, growing, place, stations = (
+        share.rows, share.designs, share.growing, share.place, share.stations
+    )  # fmt: skip
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = share.results
+    driven, poses, whole = arrays.bodies.driven, arrays.bodies.rest.size, share.preload
     for i in range(share.begin, rows.size, share.stride):
-        row = rows[i]
-        _take_design(i, designs, preload, bodies, strips, route, local)
+        row, own = rows[i], _arrays_of(i, share, route, arrays)
+        preload = Preload(
+            whole.curvature[i], whole.numbers[i], whole.bodies[i], whole.hung[i], whole.change, whole.push,
+            whole.out,
+        )  # fmt: skip
         for k in range(answer.counters.size):
             answer.counters[k] = 0
-        begin, stands = designs.start[i], True
-        if growing.factor.size > 0:
-            done = follow(begin, growing, judged, preload, arrays, tolerance, answer)
-            stands = done == growing.factor.size
-            copy(answer.y[1], begin)
-        if stations.along.size > 0:
-            for s in range(strips.roots.size):
-                for p in range(stations.along.shape[2]):
-                    copy(stations.along[i, s, p], stations.strips.along[s, p])
-        done = 0
-        if stands:
-            done = follow(begin, route, judged, preload, arrays, tolerance, answer)
+        copy(designs.start[i], answer.y[0])  # what is at rest stays with the bodies
+        done, stands = 0, True
+        for grows in (True, False):
+            leg = growing if grows else route
+            if stands and leg.factor.size > 0:
+                done = follow(answer.y[0], leg, judged, preload, own, tolerance, answer)
+                if grows:
+                    stands, done = done == leg.factor.size, 0
+                    copy(answer.y[1], answer.y[0])
         states[row] = done
         iterations[row] = answer.counters[ITERATIONS]
         length, unit = designs.length[i], designs.energy[i]
         for k in range(done):
             centre[row, k, 0] = answer.y[k, place] * length
             centre[row, k, 1] = answer.y[k, place + 1] * length
-            torque[row, k] = answer.reaction[k, bodies.driven] * unit
+            torque[row, k] = answer.reaction[k, driven] * unit
             stiffness[row, k] = answer.stiffness[k] * unit
             inertia[row, k], defect[row, k] = answer.inertia[k], answer.defect[k]
             energy[row, k] = (answer.energies[k, 0] + answer.energies[k, 1]) * unit
             if stations.along.size > 0:
-                strain[row, k] = _largest_strain(i, answer.y[k], bodies.rest.size, stations)
+                strips = _strips_of(i, stations.along[i], share, arrays.strips)
+                strain[row, k] = _largest_strain(i, answer.y[k], poses, strips, stations)

@@ -169,6 +169,7 @@ def arrays_of(
 
     shape: at whose points; gauss: at whose points modes are made orthonormal.
     """
+    given = Numbers._make(map(np.ascontiguousarray, given))
     common = _common_of(system, shape, gauss, ends, given)
     (count, strips, n), kind = given.points.shape[:3], given.points.dtype
     points, modes, bodies = shape.rule.shape[1], common.modes.shape[1], common.force.shape[1] // 3

@@ -11,7 +11,7 @@ from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, RATE, Bodies
 from spline_model.reduced.assembly import place_of
 from spline_model.reduced.beside import respond
 from spline_model.reduced.model import Reduced
-from spline_model.reduced.numbers import in_order
+from spline_model.reduced.numbers import Designs, in_order
 from spline_model.strip.compiled import called, kernel
 from spline_model.strip.element import CURVATURE, GRADIENT, LAST, ON_POINTS, PER_U, STRAIN, Strips
 from spline_model.strip.ends import to_coordinates
@@ -54,6 +54,21 @@ class Preload(NamedTuple):
             change=np.zeros((count, 2 * len(model.shape.order) + modes)),
             push=np.zeros(model.size),
             out=np.zeros(5),
+        )
+
+    @classmethod
+    def of_designs(cls, model: Reduced, designs: Designs, weight: Array, points: Array) -> Self:
+        """The same of D designs, by weight (D, Q) and points at rest (D, S, n, 2) [m]; all arrays but
+        scratch have D in front."""
+        poses, numbers = designs.start[:, : len(model.bodies.rest)], designs.numbers.copy()
+        given = in_order(points, model.shape).reshape(*points.shape[:2], -1)
+        hung = (numbers[..., ON_POINTS:] * given).sum(axis=(1, 2)) / designs.length
+        fallen = (weight[:, : poses.shape[1]] * poses).sum(axis=1)
+        return cls.of(model)._replace(
+            curvature=np.stack((designs.rest, designs.along[..., CURVATURE]), axis=1),
+            numbers=numbers,
+            bodies=weight.copy(),
+            hung=np.stack((hung, hung + fallen), axis=1),
         )
 
 

@@ -72,6 +72,7 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:
     rows, arrays = model.system.once("rows", _Rows.of), model.arrays()
     z = np.zeros((len(y), model.system.layout.size), dtype=y.dtype)
     poses = 3 * len(model.system.scene.bodies)
+    y, reaction = np.ascontiguousarray(y), np.ascontiguousarray(reaction)
     _fill_unknowns(y, reaction, poses, rows, model.to_modes, model.length, model.energy, arrays, z)
     return z
 

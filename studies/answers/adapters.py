@@ -22,22 +22,19 @@ def answer_static(
     settings: Settings,
     *,
     accuracy: float | None = None,
-    repeat: int = 1,
     progress: Progress | None = None,
 ) -> Response:
     """Solve the static path of a design from load factor 0 to 1 with the model that `settings` belongs to.
 
     The path is that of the driven rotation and of the loads in the design's order, or of the loads alone.
-    `wall_s` of the response is the median time of `repeat` whole calls: from the design to the answer, set-up
-    included, and when `repeat` is above 1 without a first one. `solve_s` is the median of what the model says
-    its increments alone took.
+    `wall_s` of the response is the time of the whole call, from the design to the answer, set-up included;
+    `solve_s` is that of the increments alone.
 
     Args:
         design: the pivot or mechanism, and its path.
         settings: names the model and its discretisation.
         accuracy: wanted error of trajectory and torque [1], which control points or elements are raised for;
             None for those of the settings.
-        repeat: timed solves of the whole path [1].
         progress: called with increments done and increments in all, by the elements.
 
     Raises:
@@ -49,11 +46,10 @@ def answer_static(
 
     def answer() -> Response:
         asked = put(design, settings)
-        path = asked.static_path(raise_on_failure=False, **wanted)
-        return Response.of(asked, path, solve_s=float(path.seconds["solve"]))
+        return Response.of(asked, asked.static_path(raise_on_failure=False, **wanted))
 
-    timing = measure(answer, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=lambda each: each.solve_s)
-    return replace(timing.result, wall_s=timing.median, solve_s=timing.median_part)
+    timing = measure(answer, repeat=1, warm_up=0)
+    return replace(timing.result, wall_s=timing.median)
 
 
 def answer_release(
@@ -62,7 +58,6 @@ def answer_release(
     *,
     duration: float,
     start: float | None = None,
-    repeat: int = 1,
     check: bool = False,
     **options: Any,
 ) -> Motion:
@@ -73,8 +68,8 @@ def answer_release(
     unless the design prescribes it further, and driven displacements without a history; loads follow their
     histories.
 
-    `wall_s` of the motion is the median time [s] of `repeat` whole calls, as of `answer_static`: it includes
-    the static path to the start, but no companion motion. `solve_s` is the time of the steps only [s].
+    `wall_s` of the motion is the time of the whole call, as of `answer_static`: it includes the static path
+    to the start, but no companion motion. `solve_s` is the time of the steps only.
 
     Args:
         design: the pivot or mechanism. If the design has no rotation, none is driven: the motion starts at
@@ -82,7 +77,6 @@ def answer_release(
         settings: the model and its discretisation.
         duration: of the motion [s].
         start: rotation at the start [rad]; None for the end of the design's path.
-        repeat: timed releases [1].
         check: whether a companion motion estimates how well control points, or elements, resolve the motion.
         options: `step` [s], `integrator`, `accuracy` [rad, of the splines] and the largest number of
             `records`, which the model checks; None for its default.
@@ -107,16 +101,15 @@ def answer_release(
             at = {"start": start, "body": design.body} | _drive_of(asked)
             return asked, at, model.solve_motion(asked.modelled, check=False, **at, **how)
 
-    many = {"repeat": repeat, "warm_up": 1 if repeat > 1 else 0}
     try:
-        timing = measure(solve, **many, part=lambda solved: float(solved[-1].seconds["solve"]))
+        timing = measure(solve, repeat=1, warm_up=0)
     except model.ConvergenceError as error:
         message = f"statics does not reach the start: {error}"
         return Motion(asked=put(design, settings, moving=True), status="not_converged", message=message)
     asked, at, result = timing.result
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
-    answer = Motion.of(asked, result, wall_s=timing.median, solve_s=timing.median_part)
+    answer = Motion.of(asked, result, wall_s=timing.median)
     return _weighed(answer, settings, start) if answer.starts_still and answer.converged else answer
 
 

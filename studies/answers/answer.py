@@ -64,12 +64,13 @@ class Answer:
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
-        """Return the neutral form of a model's own answer; `given` are its times [s] and other known
+        """Return the neutral form of a model's own answer; `given` are its time [s] and other known
         attributes."""
         ended = {
             "status": str(result.status.value),
             "message": result.message,
             "resolution": getattr(result, "resolution", ""),
+            "solve_s": float(result.seconds["solve"]),
         }
         return cls(asked=asked, solution=result, **ended | given)
 
@@ -250,15 +251,3 @@ def centre_shift(crossing: Any, rotation: Array, centre: Array, rest: Array | No
     along, across = cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]
     turned = np.stack((along, across), axis=-1)
     return np.asarray(centre + turned - crossing)
-
-
-def shift_error(error: Array, centre: Array, shift: Array) -> Array:
-    """Return relative errors (D,) [1] of centre shifts (D, S, 2) [m] of D paths with prescribed rotations.
-
-    error (D,): relative error of the centre (D, S, 2) [m]. The shift has the same absolute error, but it is
-    much smaller, so that its relative error is larger; nan if nothing shifts.
-    """
-    moved, shifted = (
-        np.fmax.reduce(np.linalg.norm(each, axis=2), axis=1) for each in (centre - centre[:, :1], shift)
-    )
-    return np.asarray(error * moved / np.where(shifted > 0.0, shifted, np.nan))

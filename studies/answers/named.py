@@ -30,7 +30,7 @@ Moved = Callable[[Any], Array]
 
 def named(design: Design) -> tuple[Quantity, ...]:
     """Return the quantities of the named parts of a design; a plain pivot has none."""
-    return (*_reactions(design), *_free_ends(design), *_points(design), *_springs(design), *_drift(design))
+    return (*_reactions(design), *_parts(design))
 
 
 def quantities_of(answer: Any) -> Iterator[tuple[Quantity, Array]]:
@@ -77,19 +77,21 @@ def _reactions(design: Design) -> Iterator[Quantity]:
         )
 
 
-def _free_ends(design: Design) -> Iterator[Quantity]:
-    """Yield displacement and rotation of the free ends of strips."""
+def _parts(design: Design) -> Iterator[Quantity]:
+    """Yield where the free ends of strips and the named points of bodies go, the energy of springs between
+    bodies, and how far the instantaneous centre at rest of a mechanism's driven body moves with the body."""
     for place, strip in enumerate(design.strips):
         if strip.tip is None:
             moved = partial(_end_moved, place)
             yield from _moved(f"{strip.name}_tip_displacement", f"tip of {strip.name}", moved, turns=True)
-
-
-def _points(design: Design) -> Iterator[Quantity]:
-    """Yield displacements of the named points of bodies."""
     for point in design.points:
         moved = partial(_point_moved, point)
         yield from _moved(f"{point.name}_displacement", point.name, moved, estimated=PLACES)
+    if design.effects.acting("spring"):
+        meaning = "energy of the springs between bodies"
+        yield Quantity(key="spring_energy_J", heading="springs", meaning=meaning, chart=False)
+    if design.rotation and design.crossing_point is None:
+        yield from _moved("centre_drift", "centre drift", _drifted, analyses=(PATH,))
 
 
 def _moved(
@@ -128,19 +130,6 @@ def _point_moved(point: Point, answer: Any) -> Array:
     rest = next(body.centre for body in answer.design.bodies if body.name == point.body)
     place = answer.bodies[point.body]
     return centre_shift(point.at, place[:, 2], place[:, :2], np.array([rest]))
-
-
-def _springs(design: Design) -> Iterator[Quantity]:
-    """Yield the energy of the springs between bodies."""
-    if design.effects.acting("spring"):
-        meaning = "energy of the springs between bodies"
-        yield Quantity(key="spring_energy_J", heading="springs", meaning=meaning, chart=False)
-
-
-def _drift(design: Design) -> Iterator[Quantity]:
-    """Yield how far the instantaneous centre at rest of a mechanism's driven body moves with the body."""
-    if design.rotation and design.crossing_point is None:
-        yield from _moved("centre_drift", "centre drift", _drifted, analyses=(PATH,))
 
 
 def _drifted(answer: Any) -> Array:

@@ -242,18 +242,17 @@ QUANTITIES = (
 )
 
 
-#: Numbers along the strips, by their key: the attribute of an answer, or of its fields along them, and what
-#: they are.
+#: Numbers along the strips, by their key: the attribute of an answer, and what they are.
 ALONG = {
-    "curvature_per_m": ("curvature", "of the deformed strip, by its length at rest [1/m]"),
-    "stretch": ("stretch", "length over length at rest [1]"),
-    "axial_force_N": ("axial_force", "tension positive [N]"),
+    "curvature_per_m": ("along.curvature", "of the deformed strip, by its length at rest [1/m]"),
+    "stretch": ("along.stretch", "length over length at rest [1]"),
+    "axial_force_N": ("along.axial_force", "tension positive [N]"),
     "shear_force_N": (
-        "shear_force",
+        "along.shear_force",
         "of the part beyond on the part before, along the normal to the left [N]",
     ),
     "bending_moment_Nm": (
-        "bending_moment",
+        "along.bending_moment",
         "positive for counter-clockwise curvature from root to tip [N m]",
     ),
     "extreme_fibre_stress_Pa": (
@@ -265,7 +264,4 @@ ALONG = {
 
 def along_of(answer: Any) -> dict[str, Array]:
     """Return the numbers along the strips (S, G, P) in SI units by key."""
-    names = {key: name for key, (name, _) in ALONG.items()}
-    return {
-        key: answer.stress if name == "stress" else getattr(answer.along, name) for key, name in names.items()
-    }
+    return {key: attrgetter(path)(answer) for key, (path, _) in ALONG.items()}

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from studies.answers.answer import Answer, centre_shift, own, read_only, shift_error
+from studies.answers.answer import Answer, centre_shift, own, read_only
 from studies.answers.models import Asked
 from studies.answers.quantities import stress_of
 from studies.kinds import Array
@@ -135,15 +135,20 @@ class Response(Answer):
         return replace(found, resolution="; ".join(filter(None, (found.resolution, above))))
 
     def _errors_beside(self, estimate: dict[str, Any]) -> dict[str, float]:
-        """Return the error of a pivot's centre shift, and none of stresses without an outer fibre."""
+        """Return the error of a pivot's centre shift [1], and none of stresses without an outer fibre.
+
+        The centre shift has the same absolute error as the centre, but it is much smaller, so that its
+        relative error is larger; NaN if nothing shifts.
+        """
         known = next((estimate[name] for name in PLACES if name in estimate), None)
         found = {}
         if not any(strip.outer_fibre or strip.thickness for strip in self.design.strips):
             found = {name: math.nan for name in STRESSES if name in estimate}
         if known is None or self.crossing is None:
             return found
-        error = shift_error(np.array([known]), self.centre[None], self.centre_shift[None])
-        return found | {"centre_shift": float(error[0])}
+        arrays = (self.centre - self.centre[0], self.centre_shift)
+        moved, shifted = (float(np.fmax.reduce(np.hypot(*array.T))) for array in arrays)
+        return found | {"centre_shift": known * moved / shifted if shifted > 0.0 else math.nan}
 
     def _in_full(self, along: Any) -> Any:
         """Return the fields with the forces by balance, where a spline has chosen its points."""

@@ -9,9 +9,9 @@ from typing import Any
 
 from studies.cases.document import CaseError, is_mechanism, parsed, refuse_sections, table, values
 from studies.cases.effects import read_effects
-from studies.cases.keys import KEYS, LISTS
+from studies.cases.keys import KEYS, LISTS, SIDES, TAPER
 from studies.cases.mechanism import Body, Driven, Strip, read_points
-from studies.cases.section import Sectioned, completed, out_of_scale, renamed, too_heavy
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, renamed, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -19,17 +19,12 @@ __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_prob
 TABLE_1 = "cross_axis_pivot"
 FOLDER = Path(__file__).parent
 
-#: Parameters that are passed on only where the case gives them: the sides of a rectangular section.
-SIDES = ("width", "thickness")
-TAPER = ("width_end", "thickness_end")
 #: What only answers ask for, or stands for other values.
-_BESIDE = (*SIDES, *TAPER, "outer_fibre", "yield_strength", "material")
-#: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
-PIVOT_PARAMETERS = tuple(
-    key.attribute for key in KEYS if key.section != "drive" and key.attribute not in _BESIDE
-)
+_BESIDE = ("outer_fibre", "yield_strength", "material")
 #: What strips and body are called.
 STRIPS, BODY = ("strip_1", "strip_2"), "body"
+#: How far area and second moment may be from those of the sides [1].
+ROUNDED = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +40,9 @@ class Problem(Sectioned, Driven):
         centre_offset: of the centre of mass from the midpoint of B1 B2, in body axes [m].
         orientation: of the whole pivot, turned about A1, counter-clockwise [rad].
         rotation: as of any design, but never None.
+
+    Raises:
+        CaseError: a value outside its admissible range.
     """
 
     length: float
@@ -55,6 +53,33 @@ class Problem(Sectioned, Driven):
     centre_offset: tuple[float, float] = (0.0, 0.0)
     orientation: float = 0.0
     rotation: float
+
+    def __post_init__(self) -> None:
+        for key in KEYS:
+            value = getattr(self, key.attribute, None)
+            if value is None and key.optional:
+                continue
+            try:
+                key.rule.parse(key.rule.in_file(value))
+            except ValueError as error:
+                raise CaseError(f"{key.section}.{key.name}: {error}") from None
+        self._check_section()
+        heavy = too_heavy(self.body_mass, self.body_moment_of_inertia)
+        for part, said in (("strip", out_of_scale(self)), ("body", heavy)):
+            if said:
+                raise CaseError(f"{part}: {said}")
+
+    def _check_section(self) -> None:
+        """Raise CaseError if the sides of the section are not those of its area and second moment."""
+        if all(getattr(self, key.attribute) is None for key in (*SIDES, *TAPER)):
+            return
+        if self.outer_fibre is not None:
+            got = f"strip.outer_fibre_m: got {self.outer_fibre:g} beside thickness_m"
+            raise CaseError(f"{got}, expected none: that of a rectangle is half of its thickness")
+        made = {} if None in (self.width, self.thickness) else of_sides(self.width, self.thickness)
+        if not made or any(abs(getattr(self, n) / value - 1.0) > ROUNDED for n, value in made.items()):
+            got = f"strip.width_m: got {self.width} by {self.thickness}"
+            raise CaseError(f"{got}, expected both sides of a rectangle with A = {self.area:g} m^2")
 
     @property
     def crossing_point(self) -> tuple[float, float]:
@@ -97,9 +122,9 @@ class Problem(Sectioned, Driven):
         return model.cross_axis_pivot(**self.pivot_parameters(), **how)
 
     def pivot_parameters(self) -> dict[str, Any]:
-        """Return the keyword arguments that `cross_axis_pivot` of either model takes."""
-        sides = [name for name in (*SIDES, *TAPER) if getattr(self, name) is not None]
-        return {name: getattr(self, name) for name in (*PIVOT_PARAMETERS, *sides)}
+        """Return the keyword arguments that `cross_axis_pivot` of either model takes, sides only if known."""
+        names = [key.attribute for key in KEYS if key.section != "drive" and key.attribute not in _BESIDE]
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
 
 def named_case(case: str | Path = TABLE_1) -> Problem:
@@ -128,13 +153,10 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
             needed = ", ".join(key.name for key in [key for key in keys if not key.optional] or keys)
             raise CaseError(f"{path}: [{section}]: got no such section, expected one with {needed}")
         found |= values(path, keys, given, section)
-    problem = Problem(
-        **completed(path, found, "strip", "material"),
-        effects=read_effects(path, content, changes),
-        points=read_points(path, content, [BODY]),
-    )
-    heavy = too_heavy(problem.body_mass, problem.body_moment_of_inertia)
-    for part, said in (("strip", out_of_scale(problem)), ("body", heavy)):
-        if said:
-            raise CaseError(f"{path}: {part}: {said}")
-    return problem
+    given = completed(path, found, "strip", "material")
+    try:
+        points, effects = read_points(path, content, [BODY]), read_effects(path, content, changes)
+        return Problem(**given, effects=effects, points=points)
+    except CaseError as error:
+        text = str(error)
+        raise error if text.startswith(path) else CaseError(f"{path}: {text}") from None

@@ -38,11 +38,7 @@ PRINTED: dict[str, tuple[tuple[str, ...], Callable[[Response], Any]]] = {
 
 
 def deliver(
-    arguments: argparse.Namespace,
-    document: Mapping[str, Any],
-    table: Iterable[str],
-    *,
-    failure: str | None,
+    arguments: argparse.Namespace, document: Mapping[str, Any], table: Iterable[str], *, failure: str | None
 ) -> int:
     """Print `table`, and write `document` where `--json` says and its arrays where `--csv` does; return the
     exit code. What goes to the output stream stands alone.
@@ -135,16 +131,20 @@ def keyed(answer: Any, *keys: str) -> dict[str, Any]:
     return {key: getattr(answer, key if hasattr(answer, key) else key.rpartition("_")[0]) for key in keys}
 
 
-def pose(answer: Answer) -> dict[str, Array]:
-    """Return the motion of the only body as columns (S,) by names with units: x [m], y [m], rotation
-    [rad]."""
-    x, y = answer.centre.T
-    return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
+def moved(answer: Answer) -> dict[str, Any]:
+    """Return the motion (S,) by names with units, x, y [m] and rotation [rad]: of a pivot that of its body,
+    of a mechanism that of all bodies by their names."""
+    if answer.crossing is not None:
+        x, y = answer.centre.T
+        return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
+    keys = ("x_m", "y_m", "rotation_rad")
+    return {"bodies": {name: dict(zip(keys, place.T, strict=True)) for name, place in answer.bodies.items()}}
 
 
 def described(answer: Answer) -> str:
     """Return the model with its settings, and the effects that it was assembled of, in two lines."""
-    given = (f"{name} {_short(value)}" for name, value in answer.settings.items() if value is not None)
+    values = {k: f"{v:.6g}" if isinstance(v, float) else v for k, v in answer.settings.items()}
+    given = (f"{name} {value}" for name, value in values.items() if value is not None)
     return f"{answer.model}: {', '.join(given)}\neffects: {', '.join(answer.effects)}"
 
 
@@ -181,12 +181,6 @@ def ending(answer: Answer) -> str:
     return "; ".join(filter(None, parts))
 
 
-def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:
-    """Return the places of bodies, (S, 3) x, y [m] and rotation [rad] by name, as JSON has them."""
-    keys = ("x_m", "y_m", "rotation_rad")
-    return {name: dict(zip(keys, place.T, strict=True)) for name, place in bodies.items()}
-
-
 def _plain(value: Any) -> Any:
     """Return a value as JSON has it: arrays and tuples as lists, null for what is not finite."""
     if isinstance(value, Mapping):
@@ -196,10 +190,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def draw(arguments: argparse.Namespace, answers: Iterable[tuple[str, Answer]]) -> None:

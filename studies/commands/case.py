@@ -8,7 +8,7 @@ docs/cases.md contains the same with the rules. Exit code 0: done; 2: bad input.
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from studies.cases import keys
 from studies.cases.effects import DEFAULT
@@ -63,16 +63,20 @@ def main(arguments: argparse.Namespace) -> int:
 def _template(*, mechanism: bool) -> Iterator[str]:
     """Yield the lines of a case file to begin with, which can be solved as it is: of a pivot, or of a
     mechanism of one strip with a body at its end."""
-    if mechanism:
-        yield "# A mechanism of strips and bodies: as many [[strips]] and [[bodies]] as it has."
-        yield "# Lines that begin with # may be deleted or put into use."
-    else:
-        yield "# A cross-axis flexural pivot. Lines that begin with # may be deleted or put into use."
+    yield "# A mechanism of strips and bodies." if mechanism else "# A cross-axis flexural pivot."
+    yield "# Lines that begin with # may be deleted or put into use; tables in [[ ]] may be repeated."
     for title, rows in (MECHANISM if mechanism else PIVOT).items():
-        yield ""
-        yield title
-        yield from _template_lines(rows)
-    yield from _scene([NAMES] if mechanism else [])
+        yield from ("", title, *_template_lines(rows))
+    yield ""
+    yield f"# What acts: {', '.join(DEFAULT)} unless said otherwise, + adds to them."
+    yield "[scene]"
+    yield f'{"" if mechanism else "# "}effects = ["+{NAMES}"]'
+    for name, rows in keys.EFFECT_KEYS.items():
+        used = mechanism and name == NAMES
+        if used or (rows and name not in DEFAULT):
+            mark = "" if used else "# "
+            yield from ("", f"# {name}: {keys.EFFECTS[name]}", f"{mark}[effects.{name}]")
+            yield from _template_lines(rows, mark)
 
 
 def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
@@ -86,26 +90,11 @@ def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
         yield f"{begin:<{COLUMN}} # {key.meaning}{unit}{choice}{default}"
 
 
-def _scene(named: list[str]) -> Iterator[str]:
-    """Yield the scene, and the tables of all effects, those that are not named as comments."""
-    yield ""
-    yield f"# What acts: {', '.join(DEFAULT)} unless said otherwise, + adds to them."
-    yield "[scene]"
-    words = ", ".join(f'"+{name}"' for name in named or [NAMES])
-    yield f"{'' if named else '# '}effects = [{words}]"
-    for name, rows in keys.EFFECT_KEYS.items():
-        if name in DEFAULT or (not rows and name not in named):
-            continue
-        mark = "" if name in named else "# "
-        yield ""
-        yield f"# {name}: {keys.EFFECTS[name]}"
-        yield f"{mark}[effects.{name}]"
-        yield from _template_lines(rows, mark)
-
-
-def markdown_head(*names: str) -> str:
-    """Return the two lines that a table of Markdown begins with."""
-    return f"| {' | '.join(names)} |\n|{'---|' * len(names)}"
+def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Yield the lines of a table of Markdown."""
+    yield f"| {' | '.join(head)} |"
+    yield f"|{'---|' * len(head)}"
+    yield from (f"| {' | '.join(row)} |" for row in rows)
 
 
 def _mechanism() -> Iterator[str]:
@@ -118,9 +107,9 @@ def _mechanism() -> Iterator[str]:
 
 def _effects() -> Iterator[str]:
     """Yield the table of effects, and that of the keys of their parameters."""
-    yield markdown_head("effect", "what it is", "in a scene")
-    for name, meaning in keys.EFFECTS.items():
-        yield f"| `{name}` | {meaning} | {'unless taken out' if name in DEFAULT else 'where it is named'} |"
+    acts = {name: "unless taken out" if name in DEFAULT else "where it is named" for name in keys.EFFECTS}
+    rows = ((f"`{name}`", meaning, acts[name]) for name, meaning in keys.EFFECTS.items())
+    yield from markdown(("effect", "what it is", "in a scene"), rows)
     yield ""
     listed = {name: f"`, `[[{section}]]" for section, effects in keys.LISTS.items() for name in effects}
     titles = {f"[effects.{n}]{listed.get(n, '')}": rows for n, rows in keys.EFFECT_KEYS.items() if rows}
@@ -129,13 +118,21 @@ def _effects() -> Iterator[str]:
 
 def _materials() -> Iterator[str]:
     """Yield the table of materials."""
-    yield "| name | E [GPa] | Poisson's ratio [1] | density [kg/m^3] | yield strength [MPa] | what, source |"
-    yield "|---|---:|---:|---:|---:|---|"
+    head = (
+        "name",
+        "E [GPa]",
+        "Poisson's ratio [1]",
+        "density [kg/m^3]",
+        "yield strength [MPa]",
+        "what, source",
+    )
+    rows = []
     for name, given in keys.MATERIALS.items():
         strength = f"{given['yield_strength'] / 1e6:g}" if "yield_strength" in given else "none"
-        elastic = f"{given['youngs_modulus'] / 1e9:g} | {given['poisson_ratio']:g} | {given['density']:g}"
+        elastic = f"{given['youngs_modulus'] / 1e9:g}", f"{given['poisson_ratio']:g}", f"{given['density']:g}"
         said = f"{given['title']}. {given['source']}. Found again: {given['checked']}"
-        yield f"| `{name}` | {elastic} | {strength} | {said} |"
+        rows.append((f"`{name}`", *elastic, strength, said))
+    return markdown(head, rows)
 
 
 #: Tables of the page of case files, by the names of their places.
@@ -150,15 +147,10 @@ PAGE: dict[str, Callable[[], Iterator[str]]] = {
 def _tables(tables: dict[str, tuple[Key, ...]]) -> Iterator[str]:
     """Yield a heading and a table of keys for each table of a file."""
     for place, (title, rows) in enumerate(tables.items()):
-        if place:
-            yield ""
-        yield f"`{title}`"
-        yield ""
-        yield from _rows(rows)
-
-
-def _rows(rows: Iterable[Key]) -> Iterator[str]:
-    yield markdown_head("key", "unit", "rule", "default", "meaning")
-    for key in rows:
-        default = key.default if key.optional else "refused"
-        yield f"| `{key.name}` | {key.unit or '-'} | {key.admitted} | {default} | {key.meaning} |"
+        yield from ("",) * min(place, 1)
+        yield from (f"`{title}`", "")
+        defaults = {key.name: key.default if key.optional else "refused" for key in rows}
+        yield from markdown(
+            ("key", "unit", "rule", "default", "meaning"),
+            ((f"`{k.name}`", k.unit or "-", k.admitted, defaults[k.name], k.meaning) for k in rows),
+        )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from studies.answers.reference import QUANTITIES, NoReference, Reference
@@ -255,6 +256,14 @@ def _table_of_audit(
 
 #: Errors that are reported beside those that a setting is judged by.
 BESIDE = tuple(name for name in PATH_ERRORS if name not in PATH_JUDGED)
+#: Columns of the advice -> what the JSON calls them.
+ADVICE = {
+    **{"group": "model", "setting": "setting", "meets": "meets"},
+    **{name: f"error_{name}" for name in PATH_ERRORS},
+    "uncertainty": "reference_uncertainty",
+    **{f"uncertainty_{name}": f"reference_uncertainty_{name}" for name in BESIDE},
+    **{name: name for name in ("whole_s", "solve_s", "message")},
+}
 
 
 @command(
@@ -286,49 +295,31 @@ def advise(arguments: argparse.Namespace) -> int:
             found = tried.advise(problem, arguments.accuracy, bar)
     except NoReference as error:
         return not_converged(error)
+    unsure = found[[f"uncertainty_{name}" for name in PATH_JUDGED]].max(axis=1)
+    found = found.assign(uncertainty=unsure).reindex(columns=list(ADVICE))
     failure = None if found["meets"].any() else f"no model meets {arguments.accuracy:g} here"
-    lines = _readable_of_advise(problem, found, arguments.accuracy)
-    return deliver(arguments, _document_of_advise(found, arguments.accuracy), lines, failure=failure)
+    models = found.rename(columns=ADVICE).to_dict("records")
+    document = {"accuracy": arguments.accuracy, "models": models}
+    return deliver(arguments, document, _advice(problem, found, arguments.accuracy), failure=failure)
 
 
-def _document_of_advise(found: pd.DataFrame, error: float) -> dict[str, Any]:
-    """Return the advice as the JSON object of the command."""
-    named = {
-        **{"group": "model", "setting": "setting", "meets": "meets"},
-        **{name: f"error_{name}" for name in PATH_ERRORS},
-        "largest": "reference_uncertainty",
-        **{f"uncertainty_{name}": f"reference_uncertainty_{name}" for name in BESIDE},
-        **{name: name for name in ("whole_s", "solve_s", "message")},
-    }
-    largest = [_uncertainty_of_advise(row) for row in found.to_dict("records")]
-    models = found.assign(largest=largest).reindex(columns=list(named)).rename(columns=named)
-    return {"accuracy": error, "models": models.to_dict("records")}
-
-
-def _uncertainty_of_advise(row: Mapping[Any, Any]) -> float:
-    """Return the largest uncertainty of the limits that a model is judged by [1]."""
-    return max(float(row[f"uncertainty_{name}"]) for name in PATH_JUDGED)
-
-
-def _readable_of_advise(problem: Design, found: pd.DataFrame, error: float) -> Iterator[str]:
+def _advice(problem: Design, found: pd.DataFrame, error: float) -> Iterator[str]:
     """Yield the lines of a table, the cheapest model that meets the error first."""
-    turned = math.degrees(problem.rotation or 0.0)
+    turned, unsure = math.degrees(problem.rotation or 0.0), found["uncertainty"].max()
     yield f"error {error:g} in {' and '.join(PATH_JUDGED)}, from 0 to {turned:.4g} deg"
-    rows = found.sort_values(["meets", "whole_s"], ascending=[False, True]).to_dict("records")
-    unsure = max(_uncertainty_of_advise(row) for row in rows)
     beside = (f"of the {name} {found[f'uncertainty_{name}'].max():.1e}" for name in BESIDE)
     yield ", ".join((f"error of the references: at most {unsure:.1e}", *beside))
-    fastest = rows[0]["whole_s"]
-    said = (row["message"] or ("" if row["meets"] else "does not meet it: its best") for row in rows)
+    rows = found.sort_values(["meets", "whole_s"], ascending=[False, True])
+    best = np.where(rows["meets"], "", "does not meet it: its best")
     yield from table(
         [
-            plain("model", (row["group"] for row in rows), left=True),
-            plain("setting", (row["setting"] for row in rows), left=True),
-            *(numbers(name, (row.get(name, math.nan) for row in rows)) for name in PATH_ERRORS),
-            numbers("whole call [ms]", (1e3 * row["whole_s"] for row in rows), ".3g"),
-            numbers("x fastest", (row["whole_s"] / fastest for row in rows), ".3g"),
-            numbers("alone [ms]", (1e3 * row["solve_s"] for row in rows), ".3g"),
-            plain("", said, left=True),
+            plain("model", rows["group"], left=True),
+            plain("setting", rows["setting"], left=True),
+            *(numbers(name, rows[name]) for name in PATH_ERRORS),
+            numbers("whole call [ms]", 1e3 * rows["whole_s"], ".3g"),
+            numbers("x fastest", rows["whole_s"] / rows["whole_s"].iloc[0], ".3g"),
+            numbers("alone [ms]", 1e3 * rows["solve_s"], ".3g"),
+            plain("", rows["message"].where(rows["message"] != "", best), left=True),
         ]
     )
     if unsure > 0.1 * error:

@@ -51,7 +51,7 @@ EXTRA = {
     Argument("--camera browser|none|N", "N: number of this machine's, default browser", default="browser"),
     Argument("--calibration FILE", "the camera's constants as JSON (default: none)", Path),
     Argument("--preset NAME", "design to start with: polymer (default), table-1, or a case of the suite"),
-    Argument("--record FILE", "store the session's events (default: none)", Path),
+    Argument("--record FILE", "store the session's events (default: none)", OUT_FILE.read),
     Argument("--replay FILE", "replay a stored session and compare (default: none)", Path),
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -71,7 +71,7 @@ def main(arguments: argparse.Namespace) -> int:
     preset = arguments.preset or ("polymer" if arguments.case is None else presets.OWN)
     presets.preset(preset)
     source, camera = _source(arguments)
-    stream = _stream(arguments.record)
+    stream = arguments.record and arguments.record.open("w", encoding="utf-8", buffering=1)
     server = Server(
         Settings(
             port=arguments.port,
@@ -80,7 +80,7 @@ def main(arguments: argparse.Namespace) -> int:
             source=source,
             calibration=None if arguments.calibration is None else Camera.read(arguments.calibration),
             preset=preset,
-            keep=None if stream is None else stream.write,
+            keep=stream and stream.write,
         )
     )
     server.bind()
@@ -205,18 +205,6 @@ def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
     if not arguments.camera.isdecimal():
         raise BadInput(f"--camera: got {arguments.camera}, expected browser, none or a number")
     return Video(int(arguments.camera)), "server"
-
-
-def _stream(path: Path | None):  # type: ignore[no-untyped-def]
-    """Open the file of a recording; BadInput if it cannot be written."""
-    if path is None:
-        return None
-    try:
-        return path.open("w", encoding="utf-8", buffering=1)
-    except OSError as error:
-        raise BadInput(
-            f"--record: got {path}, expected a file that can be written ({error.strerror})"
-        ) from None
 
 
 def _replay(path: Path) -> int:

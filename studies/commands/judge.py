@@ -67,7 +67,7 @@ def _read(path: Path, known: list[str]) -> pd.DataFrame:
     try:
         rows = pd.read_csv(path, dtype=str, keep_default_na=False, index_col=False).fillna("")
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or error
+        why = " ".join(str(getattr(error, "strerror", None) or error).split())
         raise BadInput(f"{path}: got no table ({why}), expected a CSV file in UTF-8") from None
     if not set(COLUMNS) <= set(rows) or rows.empty:
         got = f"{len(rows)} rows with the columns {', '.join(map(str, rows))}"

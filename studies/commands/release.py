@@ -134,13 +134,11 @@ def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
 def _without_followers(design: Design) -> Design:
     """Return the design whose loads keep their directions, which alone has modes."""
     effects = design.effects
-    tables = {
-        name: tuple(
-            {key: value for key, value in own.items() if key != "follower"} for own in effects.every(name)
-        )
+    fixed = {
+        name: tuple({**own, "follower": False} if "follower" in own else own for own in effects.every(name))
         for name in effects.tables
     }
-    return replace(design, effects=replace(effects, tables=tables))
+    return replace(design, effects=replace(effects, tables=fixed))
 
 
 def _last_time(design: Design) -> float:
@@ -167,7 +165,7 @@ def _document(answer: Motion) -> dict[str, Any]:
         "frequency_reason": answer.swing.reason,
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
-        **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
+        **tell.moved(answer),
         **{each.key: each.of(answer) for each in energies},
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),

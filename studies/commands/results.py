@@ -19,7 +19,7 @@ import pandas as pd
 
 from studies.answers import quantities
 from studies.commands.arguments import NAMES, RESULTS
-from studies.commands.case import PAGE, markdown_head
+from studies.commands.case import PAGE, markdown
 from studies.commands.parser import Argument, command, whole_number
 from studies.engine import Answer, Part, Study, Tables
 from studies.errors import BadInput
@@ -259,11 +259,12 @@ SPACES = str.maketrans({"\u00a0": " ", "\u202f": " "})
 
 def _quantities(results: "Results") -> Iterator[str]:
     """Yield the table of the quantities of a path."""
-    yield markdown_head("key", "unit", "meaning", "in a sweep")
+    rows = []
     for each in quantities.QUANTITIES:
         swept = f"`{each.name_in_sweep}`, {each.standing}" if each.standing else "–"
         meaning = each.meaning + (", of mechanisms" if each.mechanisms else "")
-        yield f"| `{each.key}` | {each.unit} | {meaning} | {swept} |"
+        rows.append((f"`{each.key}`", each.unit, meaning, swept))
+    return markdown(("key", "unit", "meaning", "in a sweep"), rows)
 
 
 def _of_page(name: str) -> Made:
@@ -277,8 +278,7 @@ def _of_report(name: str) -> Made:
         from report.build import quotable
 
         table = quotable()["listings"][name].given(name, results)
-        yield markdown_head(*table["head"])
-        yield from (f"| {' | '.join(row)} |".translate(SPACES) for row in table["rows"])
+        return (line.translate(SPACES) for line in markdown(table["head"], table["rows"]))
 
     return lines
 

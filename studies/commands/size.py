@@ -143,19 +143,16 @@ def _question(arguments: argparse.Namespace) -> Question:
 
 def _require_sizable(where: str, start: Problem) -> None:
     """Raise BadInput for a pivot of which no range can be sized."""
-    got, expected = "", ""
-    if not start.rotation:
-        got, expected = "drive.rotation_deg: got 0", "a range to size for"
-    elif start.outer_fibre is not None:
-        got = f"strip.outer_fibre_m: got {start.outer_fibre:g}"
-        expected = "none: both sides of a rectangular section are sized"
-    elif "driven_displacement" in start.effects.names:
-        got, expected = "scene.effects: got driven_displacement", "a body that is free to shift"
-    elif len(evaluate.sides_of(start)) > 1 and start.order != LOADS_FIRST:
-        got = f'drive.order: got "{start.order}"'
-        expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
-    if got:
-        raise BadInput(f"{where}: {got}, expected {expected}")
+    effects, order = set(start.effects.names), start.order
+    late = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
+    for wrong, got, expected in (
+        (not start.rotation, "drive.rotation_deg: got 0", "a range to size for"),
+        (start.outer_fibre, f"strip.outer_fibre_m: got {start.outer_fibre}", "none: sides of a rectangle"),
+        ("driven_displacement" in effects, "scene.effects: got driven_displacement", "a body free to shift"),
+        (effects - evaluate.PLAIN and order != LOADS_FIRST, f'drive.order: got "{order}"', late),
+    ):
+        if wrong:
+            raise BadInput(f"{where}: {got}, expected {expected}")
 
 
 def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Accurate]:

@@ -96,11 +96,10 @@ def _stopped(answer: Response) -> str:
     return f"{reached}{answer.message}{mend}"
 
 
-def _arrays(answer: Response) -> dict[str, Array]:
+def _arrays(answer: Response) -> dict[str, Any]:
     """Return what is one number in every state, by names with units."""
-    found, pivot = {"load_factor": answer.load_factor}, answer.crossing is not None
+    found, pivot = {"load_factor": answer.load_factor, **tell.moved(answer)}, answer.crossing is not None
     if pivot:
-        found |= tell.pose(answer)
         found |= dict(zip(("centre_shift_x_m", "centre_shift_y_m"), answer.centre_shift.T, strict=True))
     found |= {each.key: values for each, values in quantities_of(answer) if not (pivot and each.mechanisms)}
     if answer.body is not None:
@@ -138,7 +137,6 @@ def _document(answer: Response) -> dict[str, Any]:
         **tell.headed(answer),
         "critical_points": _critical(answer),
         **_arrays(answer),
-        **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         "strength": _strength(answer),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),

@@ -141,13 +141,11 @@ def critical_load(arguments: argparse.Namespace) -> int:
     def ask(settings: Settings, bar: Bar) -> CriticalLoad:
         return critical.critical_load(design, settings, **how)
 
-    return tell.asked(
-        arguments,
-        ask,
-        _document_of_load,
-        _readable_of_load,
-        stopped=lambda each: f"{each.model}: {each.message}",
-    )
+    return tell.asked(arguments, ask, _document_of_load, _readable_of_load, stopped=_stopped_of_load)
+
+
+def _stopped_of_load(found: CriticalLoad) -> str:
+    return f"{found.model}: {found.message}"
 
 
 def _document_of_load(found: CriticalLoad) -> dict[str, Any]:

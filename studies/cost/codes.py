@@ -23,13 +23,16 @@ from studies.answers.reference import SwingReference, largest_errors, sampled
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.cost import tried
-from studies.cost.settings import GROUPS, LOOKS, SPLINE, missing, paths, swings
-from studies.engine import Answer, Part, Row, Study, Tables
+from studies.cost.exudyn import exudyn_ancf
+from studies.cost.openseespy import openseespy_frame
+from studies.cost.tried import SPLINE
+from studies.engine import Answer, Part, Row, Study, Tables, lacking
 from studies.kinds import Array
 from studies.paper.formulations import DURATION, INSTANTS
 from studies.record.panels import Axis, Curves, Level, Panel, sheet
 from studies.record.progress import measure
 from studies.record.source import ROOT
+from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, SKY, Look
 
 #: What paths and swings are judged by, and the errors at which their times are compared [1] and [rad].
 JUDGED = {"paths": tried.PATH_JUDGED, "swings": tried.SWING_JUDGED}
@@ -49,8 +52,18 @@ SWINGS = {16: 3e-7, 14: 4e-7}
 RECORDS = 4000
 #: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
 SHEAR_MESHES = (36, 54, 81, 121)
-#: Packages of the other codes.
-CODES = ("exudyn", "openseespy")
+#: Other codes by their packages.
+CODES = {"exudyn": exudyn_ancf, "openseespy": openseespy_frame}
+#: Groups in the order of the tables, beside the spline.
+GROUPS = (tried.ITSELF, tried.ELEMENTS, tried.SHEARED, tried.EXUDYN, tried.OPENSEES, tried.SURROGATE)
+#: Looks of those that are drawn: a colour a code.
+LOOKS = {
+    SPLINE: Look(label="spline", colour=BLUE, marker="x"),
+    tried.ITSELF: Look(label="spline, by itself", colour=SKY, line="--", marker="D"),
+    tried.ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
+    tried.EXUDYN: Look(label="Exudyn", colour=PURPLE, marker="^"),
+    tried.OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
+}
 #: What the other codes' rods with shear have beside it.
 ROTARY = "section_rotary_inertia"
 
@@ -71,7 +84,7 @@ def _paths() -> Answer:
         for theory, limit in limits.items()
         for name in reference.QUANTITIES
     ]
-    return {"path_limits": rows, **_apart("paths", tried.compared(paths(), design, limits))}
+    return {"path_limits": rows, **_apart("paths", tried.compared(tried.paths(), design, limits))}
 
 
 def _swings() -> Answer:
@@ -91,7 +104,10 @@ def _swings() -> Answer:
         }
         for theory, limit in limits.items()
     ]
-    return {"swing_limits": rows, **_apart("swings", tried.compared(swings(), problem, limits, INSTANTS))}
+    return {
+        "swing_limits": rows,
+        **_apart("swings", tried.compared(tried.swings(), problem, limits, INSTANTS)),
+    }
 
 
 def _refined_swing(problem: Problem, instants: Array) -> SwingReference:
@@ -184,6 +200,11 @@ def _panel(tables: Tables, name: str, y: Axis, title: str, *marks: Level) -> Pan
     return Panel(time_axis, y, (Curves(best, LOOKS, by="group"), *marks), title=title)
 
 
+def _missing() -> str:
+    """Return what this machine lacks of the other codes; or nothing."""
+    return lacking("peers", [code for code, model in CODES.items() if not model.installed()])
+
+
 STUDY = Study(
     parts=(
         Part(at=lambda: CODES, ask=lambda code: {"codes": {"code": code, "version": version(code)}}),
@@ -194,5 +215,5 @@ STUDY = Study(
     made={"path_ratios": partial(_ratios, "paths"), "swing_ratios": partial(_ratios, "swings")},
     varying=("path_ratios", "swing_ratios"),
     figures={"cost": _figure},
-    missing=missing,
+    missing=_missing,
 )

@@ -54,7 +54,7 @@ import numpy as np
 
 from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Model, geometry_of, steps_of, turns_of
+from studies.cost.model import Model, Places, centre_of, ends_of, steps_of, turns_of
 from studies.errors import Unanswered
 from studies.kinds import Array
 
@@ -86,14 +86,13 @@ class _System:
         self.exu, self._items = _loaded()
         self._container = self.exu.SystemContainer()
         self.mbs = self._container.AddSystem()
-        at_rest, kinds = geometry_of(problem), self.exu.OutputVariableType
-        self.body = self.add("NodeRigidBody2D", referenceCoordinates=[*at_rest.centre, 0.0])
+        centre, kinds = centre_of(problem), self.exu.OutputVariableType
+        self.body = self.add("NodeRigidBody2D", referenceCoordinates=[centre.real, centre.imag, 0.0])
         inertia = {"mass": problem.body_mass, "inertia": problem.body_moment_of_inertia}
         self.add("ObjectRigidBody2D", nodeNumber=self.body, **inertia)
         self.zero = self.add("MarkerNodeCoordinate", nodeNumber=self.add("NodePointGround"), coordinate=0)
-        for root, direction, tip in zip(at_rest.root, at_rest.direction, at_rest.tip, strict=True):
-            places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
-            self._attach(tip - at_rest.centre, *strip(self, problem, places, direction))
+        for root, tip in ends_of(problem):
+            self._attach(tip - centre, *strip(self, problem, np.linspace(root, tip, 2 * elements + 1)))
         self.drive = self.hold(self.body, 2)
         coordinates = {"storeInternal": True, "outputVariableType": kinds.Coordinates}
         self.place = self.add("SensorNode", nodeNumber=self.body, **coordinates)
@@ -112,11 +111,11 @@ class _System:
         marker = self.add("MarkerNodeCoordinate", nodeNumber=node, coordinate=coordinate)
         return self.add("ObjectConnectorCoordinate", markerNumbers=[self.zero, marker], offset=0.0)
 
-    def _attach(self, place: Array, last: int, angle: float) -> None:
+    def _attach(self, place: complex, last: int, angle: float) -> None:
         """Join the node `last`, of axes at `angle` [rad], rigidly to the body, at `place` from its centre."""
         cosine, sine = np.cos(angle), np.sin(angle)
         axes = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-        there = self.exu.HT(rotation=axes, translation=[*place, 0.0])
+        there = self.exu.HT(rotation=axes, translation=[place.real, place.imag, 0.0])
         markers = [
             self.add("MarkerBodyRigid", bodyNumber=0, localHT=there),
             self.add("MarkerNodeRigid", nodeNumber=last),
@@ -185,9 +184,9 @@ class _System:
         return np.array(self.mbs.GetSensorStoredData(sensor))
 
 
-#: Adds a strip with its clamp to the pivot, elements between places (E + 1, 2) [m] along a direction (2,);
+#: Adds a strip of E elements with its clamp to the pivot, places (2 E + 1,) being their ends and middles;
 #: returns the number of the last node and the angle of its axes at rest [rad].
-_Strip = Callable[[_System, Problem, Array, Array], tuple[int, float]]
+_Strip = Callable[[_System, Problem, Places], tuple[int, float]]
 
 
 def _path(strip: _Strip, problem: Problem, *, elements: int, relative_tolerance: float = 1e-8) -> SolvedPath:
@@ -241,22 +240,23 @@ def _loaded() -> tuple[Any, Any]:
     return exudyn, items
 
 
-def _rigidities(problem: Problem, elements: int) -> dict[str, float]:
+def _rigidities(problem: Problem, places: Places) -> dict[str, float]:
     """Return what both kinds of elements are given."""
     return {
-        "length": problem.length / elements,
+        "length": problem.length / (len(places) // 2),
         "massPerLength": problem.density * problem.area,
         "bendingStiffness": problem.youngs_modulus * problem.second_moment_of_area,
         "axialStiffness": problem.youngs_modulus * problem.area,
     }
 
 
-def _cable(system: _System, problem: Problem, places: Array, direction: Array) -> tuple[int, float]:
+def _cable(system: _System, problem: Problem, places: Places) -> tuple[int, float]:
     """Add a strip of ANCF cables, its slope held along the strip, whose length is left to stretch."""
-    slopes = [[*place, *direction] for place in places]
+    along = (places[-1] - places[0]) / problem.length
+    slopes = [[place.real, place.imag, along.real, along.imag] for place in places[::2]]
     nodes = [system.add("NodePoint2DSlope1", referenceCoordinates=each) for each in slopes]
     for pair in pairwise(nodes):
-        system.add("ObjectANCFCable2D", nodeNumbers=list(pair), **_rigidities(problem, len(nodes) - 1))
+        system.add("ObjectANCFCable2D", nodeNumbers=list(pair), **_rigidities(problem, places))
     for coordinate in range(2):
         system.hold(nodes[0], coordinate)
     clamped = (system.add("NodePointGround"), nodes[0])
@@ -264,21 +264,21 @@ def _cable(system: _System, problem: Problem, places: Array, direction: Array) -
         "ObjectConnectorCoordinateVector",
         markerNumbers=[system.add("MarkerNodeCoordinates", nodeNumber=node) for node in clamped],
         scalingMarker0=[],
-        scalingMarker1=np.array([[0.0, 0.0, -direction[1], direction[0]]]),
+        scalingMarker1=np.array([[0.0, 0.0, -along.imag, along.real]]),
         offset=[0.0],
     )
-    return nodes[-1], float(np.arctan2(direction[1], direction[0]))
+    return nodes[-1], float(np.angle(along))
 
 
-def _beam(system: _System, problem: Problem, places: Array, direction: Array) -> tuple[int, float]:
+def _beam(system: _System, problem: Problem, places: Places) -> tuple[int, float]:
     """Add a strip of exact beams, of three nodes each."""
     shear_modulus = problem.youngs_modulus / (2.0 * (1.0 + problem.poisson_ratio))
-    own = _rigidities(problem, len(places) - 1) | {
+    own = _rigidities(problem, places) | {
         "crossSectionInertia": problem.density * problem.second_moment_of_area,
         "shearStiffness": SHEAR_CORRECTION * shear_modulus * problem.area,
     }
-    halves = np.insert(places, range(1, len(places)), 0.5 * (places[1:] + places[:-1]), axis=0)
-    nodes = [system.add("NodeRigidBody2D", referenceCoordinates=[*place, 0.0]) for place in halves]
+    at_rest = [[place.real, place.imag, 0.0] for place in places]
+    nodes = [system.add("NodeRigidBody2D", referenceCoordinates=each) for each in at_rest]
     for first in range(0, len(nodes) - 1, 2):
         system.add("ObjectBeamGeometricallyExact2D", nodeNumbers=nodes[first : first + 3], **own)
     for coordinate in range(3):

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.motion import Motion
@@ -17,6 +18,9 @@ from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
+
+#: Places in the plane, x + iy [m].
+Places = NDArray[np.complex128]
 
 
 def _unanswered(*_: Any, **__: Any) -> Any:
@@ -94,38 +98,17 @@ def steps_of(duration: float, step: float) -> int:
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Geometry:
-    """The pivot at rest: origin at the ground end of strip 1, x along the ground plate.
-
-    Attributes:
-        root: (2, 2) ground ends of the strips [m].
-        direction: (2, 2) unit vectors from there to the body.
-        tip: (2, 2) body ends [m].
-        crossing: (2,) where the strips cross [m].
-        centre: (2,) centre of mass of the body [m].
-    """
-
-    root: Array
-    direction: Array
-    tip: Array
-    crossing: Array
-    centre: Array
+def ends_of(problem: Problem) -> Places:
+    """Return root and tip of both strips of a pivot at rest (2, 2) [m], as x + iy."""
+    return np.asarray(np.array([(strip.start, strip.end) for strip in problem.strips]) @ [1.0, 1.0j])
 
 
-def geometry_of(problem: Problem) -> Geometry:
-    """Return the pivot at rest.
+def centre_of(problem: Problem) -> complex:
+    """Return the centre of mass of the body of a pivot at rest [m], as x + iy.
 
     Raises:
         BadInput: a scene of other effects.
     """
     if set(problem.effects.names) != set(EFFECTS):
         raise BadInput(f"effects: got {', '.join(problem.effects.names)}, expected {', '.join(EFFECTS)}")
-    root, tip = (np.array([getattr(strip, end) for strip in problem.strips]) for end in ("start", "end"))
-    return Geometry(
-        root=root,
-        direction=(tip - root) / problem.length,
-        tip=tip,
-        crossing=np.array(problem.crossing_point),
-        centre=np.array(problem.bodies[0].centre),
-    )
+    return complex(*problem.bodies[0].centre)

@@ -29,7 +29,7 @@ import numpy as np
 
 from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Model, geometry_of, steps_of, turns_of
+from studies.cost.model import Model, centre_of, ends_of, steps_of, turns_of
 from studies.errors import Unanswered
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
@@ -80,7 +80,7 @@ def _path(problem: Problem, *, elements: int = 20, tolerance: float = 1e-8) -> S
             raise Unanswered(f"OpenSees: no convergence at {turn:g} rad")
         states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
     seconds, answer = time.perf_counter() - begin, np.array(states)
-    centre = geometry_of(problem).centre + answer[:, :2]
+    centre = problem.bodies[0].centre + answer[:, :2]
     return SolvedPath(rotation=turns, centre=centre, torque=answer[:, 2], solve_s=seconds)
 
 
@@ -101,10 +101,10 @@ def _swing(
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     """Make nodes, strips and body again: OpenSees has one model at a time. A moving one has masses."""
-    ops, at_rest = _loaded(), geometry_of(problem)
+    ops, centre = _loaded(), centre_of(problem)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
-    ops.node(BODY, *map(float, at_rest.centre))
+    ops.node(BODY, centre.real, centre.imag)
     if moving:
         ops.mass(BODY, problem.body_mass, problem.body_mass, problem.body_moment_of_inertia)
     ops.geomTransf("Corotational", 1)
@@ -112,12 +112,10 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     link = (LINK_FACTOR * section[0], section[1], LINK_FACTOR * section[2])
     mass = ("-mass", problem.density * problem.area) if moving else ()
     element = 1
-    for strip in range(2):
+    for strip, (root, tip) in enumerate(ends_of(problem)):
         first = BODY + 1 + strip * (elements + 1)
-        way = at_rest.tip[strip] - at_rest.root[strip]
-        places = at_rest.root[strip] + np.linspace(0.0, 1.0, elements + 1)[:, None] * way
-        for number, place in enumerate(places):
-            ops.node(first + number, *map(float, place))
+        for node, place in enumerate(np.linspace(root, tip, elements + 1), first):
+            ops.node(node, float(place.real), float(place.imag))
         ops.fix(first, 1, 1, 1)
         for node in range(first, first + elements):
             ops.element("elasticBeamColumn", element, node, node + 1, *section, 1, *mass)

@@ -59,6 +59,7 @@ Source: S. Awtar, A. H. Slocum, E. Sevincer, Journal of Mechanical Design 129 (2
 derived here.
 """
 
+import cmath
 import math
 import time
 from collections.abc import Callable
@@ -74,7 +75,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.reference import SolvedPath, errors, largest_errors
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
-from studies.cost.model import Geometry, Model, geometry_of, spline, turns_of
+from studies.cost.model import Model, Places, centre_of, ends_of, spline, turns_of
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
@@ -126,16 +127,17 @@ def _shift_coefficient(problem: Problem) -> float:
     return -(9.0 * away**2 - 9.0 * away + 1.0) * problem.length / (15.0 * math.sin(problem.inclination))
 
 
-def _centre(at_rest: Geometry, p: Array, shift: Any) -> Array:
+def _centre(problem: Problem, p: Array, shift: Any) -> Array:
     """Return the centre of mass (S, 2) of a body whose point at the crossing moves by x + iy [m]."""
-    z = shift + complex(*(at_rest.centre - at_rest.crossing)) * np.exp(1j * p)
-    return np.stack((z.real, z.imag), axis=-1) + at_rest.crossing
+    crossing = complex(*problem.crossing_point)
+    z = crossing + shift + (centre_of(problem) - crossing) * np.exp(1j * p)
+    return np.stack((z.real, z.imag), axis=-1)
 
 
 def _constant(problem: Problem, p: Array, stiffness: float, shift: float = 0.0) -> State:
     """Return a pivot of constant stiffness [N m/rad]; shift: of the body's point at the crossing, over p^2
     [m]."""
-    centre = _centre(geometry_of(problem), p, 1j * shift * p**2)
+    centre = _centre(problem, p, 1j * shift * p**2)
     return State(centre, stiffness * p, np.full(len(p), stiffness))
 
 
@@ -218,7 +220,7 @@ def _linkage_law(problem: Problem, p: Array) -> State:
     (m, m_1, m_2), (h, h_1, h_2) = _links(p, ground, body, problem.inclination)
     by_mean = m_1**2 + m * m_2 + (1.0 - m_1) ** 2 - (p - m) * m_2
     return State(
-        centre=_centre(geometry_of(problem), p, _shift(p, ground, body, problem.inclination)),
+        centre=_centre(problem, p, _shift(p, ground, body, problem.inclination)),
         torque=2.0 * k * (m * m_1 + (p - m) * (1.0 - m_1) + 2.0 * h * h_1),
         stiffness=2.0 * k * (by_mean + 2.0 * (h_1**2 + h * h_2)),
     )
@@ -235,32 +237,25 @@ def _element(u: float, v: Array, compliance: float) -> tuple[Array, Array]:
     return np.append(p, K0 @ v + p * k1 + p**2 * k2), hessian
 
 
-def _assembled(problem: Problem, at_rest: Geometry, place: Array, turn: float) -> tuple[Array, Array]:
+def _assembled(problem: Problem, at_rest: Places, place: complex, turn: float) -> tuple[Array, Array]:
     """Return the gradient (3,) and the Hessian (3, 3) of the energy of both strips over EI/L by the body's
-    place (2,) [m] and its rotation [rad]."""
+    place [m] and its rotation [rad].
+
+    Args:
+        at_rest: of each strip its root, its tip from there, and from the body's centre (2, 3) [m].
+    """
     compliance = problem.second_moment_of_area / (problem.area * problem.length**2)
     gradient, hessian = np.zeros(3), np.zeros((3, 3))
-    for ground, along, end in zip(at_rest.root, at_rest.direction, at_rest.tip, strict=True):
-        frame = np.stack((along, _quarter_turned(along))) / problem.length
-        arm = _turned(end - at_rest.centre, turn)
-        tip = frame @ (place + arm - ground)
-        g, h = _element(tip[0] - 1.0, np.array([tip[1], turn]), compliance)
-        jacobian = np.eye(3)
-        jacobian[:2, :2], jacobian[:2, 2] = frame, frame @ _quarter_turned(arm)
+    for ground, along, end in at_rest:
+        arm = cmath.rect(1.0, turn) * end
+        tip, *rates = np.array([place + arm - ground, 1.0, 1.0j, 1.0j * arm, -arm]) / along
+        g, h = _element(tip.real - 1.0, np.array([tip.imag, turn]), compliance)
+        moved = np.array(rates)
+        jacobian = np.stack((moved[:3].real, moved[:3].imag, (0.0, 0.0, 1.0)))
         gradient += g @ jacobian
         hessian += jacobian.T @ h @ jacobian
-        hessian[2, 2] -= g[:2] @ frame @ arm
+        hessian[2, 2] += g[0] * moved[3].real + g[1] * moved[3].imag
     return gradient, hessian
-
-
-def _turned(vector: Array, angle: float) -> Array:
-    """Return a vector (2,) turned counter-clockwise by an angle [rad]."""
-    return math.cos(angle) * vector + math.sin(angle) * _quarter_turned(vector)
-
-
-def _quarter_turned(vector: Array) -> Array:
-    """Return a vector (2,) turned counter-clockwise by 90 degrees."""
-    return np.array([-vector[1], vector[0]])
 
 
 def _beam_law(problem: Problem, turns: Array) -> State:
@@ -269,25 +264,25 @@ def _beam_law(problem: Problem, turns: Array) -> State:
     Raises:
         Unanswered: there is no equilibrium at one of them.
     """
-    at_rest = geometry_of(problem)
+    ground, end = ends_of(problem).T
+    at_rest = np.stack((ground, end - ground, end - centre_of(problem)), axis=1)
     states = [_equilibrium(problem, at_rest, float(turn)) for turn in turns]
     place, torque, stiffness = (np.array(each) for each in zip(*states, strict=True))
     unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length
     return State(place, unit * torque, unit * stiffness)
 
 
-def _equilibrium(problem: Problem, at_rest: Geometry, turn: float) -> tuple[Array, float, float]:
+def _equilibrium(problem: Problem, at_rest: Places, turn: float) -> tuple[Array, float, float]:
     """Return the body's place (2,) [m], and torque and stiffness over EI/L; errors as of `_beam_law`."""
 
     def forces(place: Array) -> tuple[Array, Array]:
-        gradient, hessian = _assembled(problem, at_rest, place, turn)
+        gradient, hessian = _assembled(problem, at_rest, complex(*place), turn)
         return gradient[:2], hessian[:2, :2]
 
-    pinned = at_rest.crossing + _turned(at_rest.centre - at_rest.crossing, turn)
-    found = root(forces, pinned, jac=True, tol=PLACED)
+    found = root(forces, _centre(problem, np.array([turn]), 0.0)[0], jac=True, tol=PLACED)
     if not found.success:
         raise Unanswered(f"constraint model: no equilibrium at {math.degrees(turn):.3g} deg")
-    gradient, hessian = _assembled(problem, at_rest, found.x, turn)
+    gradient, hessian = _assembled(problem, at_rest, complex(*found.x), turn)
     free = np.linalg.solve(hessian[:2, :2], hessian[:2, 2])
     return found.x, gradient[2], hessian[2, 2] - hessian[2, :2] @ free
 

@@ -1,4 +1,10 @@
-"""Settings tried one after another against the limit of each theory of the rod: errors, times, the cheapest.
+"""The one list of settings that are compared, each held against the limit of its theory of the rod.
+
+Implicit schemes of all models take the same steps; explicit ones take their own, near the largest stable one.
+Surrogates are of statics alone. In motion strips have no shear and no rotary inertia of their sections, but
+for Exudyn's exact beams, which have both: two theories are 3e-2 rad apart after 0.05 s, so that each is held
+against the limit of its own. Of Exudyn's motions a relative tolerance of 1e-5 was tried as well: it is the
+cheapest setting at no error.
 
 A time is that of a whole call, once all is compiled and loaded: from the design in memory to the answer in
 common terms, set-up included, and of a swing the static path to its start. What the model says of its
@@ -6,7 +12,9 @@ increments or steps alone stands beside it. An advice is the cheapest setting of
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from operator import attrgetter
 from typing import Any
@@ -18,16 +26,132 @@ from studies.answers import reference
 from studies.answers.reference import Reference
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.cost import settings as listed
-from studies.cost.model import elements, spline
-from studies.cost.settings import Setting
+from studies.cost.exudyn import exudyn_ancf, exudyn_exact
+from studies.cost.model import Model, elements, spline
+from studies.cost.openseespy import openseespy_frame
+from studies.cost.surrogates import SURROGATES
 from studies.engine import Row
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array, Progress
 from studies.record.progress import measure, silent, watched
 
+#: What models are compared under, the spline first.
+SPLINE, ITSELF, ELEMENTS, SHEARED = "spline", "spline, by itself", "finite elements", "elements with shear"
+EXUDYN, OPENSEES, SURROGATE = "Exudyn", "OpenSees", "surrogates"
+
 #: Theories of a strip, both with bending per reference length: without and with shear.
 THEORIES = MATERIAL, SHEAR = "material", "shear"
+
+
+#: How settings are told; others by their name.
+WORDS: dict[str, Callable[[Any], str]] = {
+    "control_points": "n = {}".format,
+    "elements": "{} elements".format,
+    "accuracy": "accuracy {:g}".format,
+    "integrator": str,
+    "element": str,
+    "step": lambda step: f"{1e6 * step:.3g} µs",
+    "tolerance": "tolerance {:g}".format,
+    "relative_tolerance": "relative tolerance {:g}".format,
+    "spectral_radius": "spectral radius {:g}".format,
+}
+#: What makes a setting finer: more of it, or less.
+FINER = {"step": -1.0, "accuracy": -1.0, "control_points": 1.0, "elements": 1.0}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Setting:
+    """One setting of one model.
+
+    Attributes:
+        model: that is asked. group: what it is compared under. settings: keywords of the model.
+    """
+
+    model: Model
+    group: str
+    settings: Mapping[str, Any]
+
+    @property
+    def theory(self) -> str:
+        """What the strips' energies are measured in, which decides on the limit: of `THEORIES`."""
+        return SHEAR if self.model.sheared or self.settings.get("element") == "reissner" else MATERIAL
+
+    @property
+    def kind(self) -> tuple[str, ...]:
+        """What settings have in common that differ in numbers alone: the code that they load."""
+        words = (value for value in self.settings.values() if isinstance(value, str))
+        return (self.model.name, *self.settings, *words)
+
+    @property
+    def finer(self) -> str:
+        """Name of what makes it finer: the step, if it has one; empty if nothing does."""
+        return next((name for name in FINER if name in self.settings), "")
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """What it is in tables.
+
+        A `family` are settings that differ in their `fineness` alone; of paths, in control points or elements
+        and accuracy.
+        """
+        told = {name: WORDS[name](value) for name, value in self.settings.items()}
+        finer = {self.finer} if self.finer == "step" else {*FINER}
+        same = [words for name, words in told.items() if name not in finer]
+        return {
+            "model": self.model.name,
+            "group": self.group,
+            "setting": ", ".join(told.values()) or "closed form",
+            "theory": self.theory,
+            "family": ", ".join((self.model.name, *same)),
+            "fineness": FINER[self.finer] * float(self.settings[self.finer]) if self.finer else 1.0,
+        }
+
+
+def grid(model: Model, group: str, **axes: Sequence[Any]) -> list[Setting]:
+    """Return the settings of a model on a grid, the last axis changing fastest."""
+    return [
+        Setting(model=model, group=group, settings=dict(zip(axes, values, strict=True)))
+        for values in product(*axes.values())
+    ]
+
+
+#: Elements a strip of the suite's own elements on a path.
+MESHES = (4, 5, 10, 20, 40, 80, 160, 320)
+
+
+def paths() -> list[Setting]:
+    """Return the settings of the static path."""
+    tolerances = (1e-5, 1e-6, 1e-8)
+    exact = (1, 2, 3, 4, 6, 8, 12, 16, 20, 24)
+    return [
+        *grid(spline, SPLINE, control_points=range(4, 13)),
+        *grid(spline, ITSELF, accuracy=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
+        *grid(elements, ELEMENTS, elements=MESHES),
+        *grid(elements, SHEARED, elements=MESHES, element=("reissner",)),
+        *(each for model in SURROGATES.values() for each in grid(model, SURROGATE)),
+        *grid(exudyn_ancf, EXUDYN, elements=(2, 4, 6, 8, 12, 16, 24, 40), relative_tolerance=tolerances),
+        *grid(exudyn_exact, EXUDYN, elements=exact, relative_tolerance=tolerances),
+        *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40, 80, 160), tolerance=(1e-8, 1e-10)),
+    ]
+
+
+#: Steps of all implicit schemes [s].
+STEPS = (5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5)
+
+
+def swings() -> list[Setting]:
+    """Return the settings of the motion after the release of the paper's pivot."""
+    exudyn: dict[str, Any] = {"step": STEPS, "spectral_radius": (0.9, 0.6), "relative_tolerance": (1e-3,)}
+    explicit, implicit = ("central-difference",), ("generalised-alpha",)
+    return [
+        *grid(spline, SPLINE, control_points=range(4, 11), integrator=("leapfrog",)),
+        *grid(spline, SPLINE, control_points=(4, 5, 6, 7, 8), integrator=("energy",), step=STEPS),
+        *grid(elements, ELEMENTS, elements=(10, 16, 24, 36), integrator=explicit),
+        *grid(elements, ELEMENTS, elements=(10, 16, 24), integrator=implicit, step=STEPS),
+        *grid(exudyn_ancf, EXUDYN, elements=(3, 4, 6, 8, 12), **exudyn),
+        *grid(exudyn_exact, EXUDYN, elements=(2, 3, 4, 6), **exudyn),
+        *grid(openseespy_frame, OPENSEES, elements=(10, 20, 40), step=STEPS),
+    ]
 
 
 def path_limit(design: Design, theory: str) -> Reference:
@@ -71,31 +195,23 @@ def compared(
     many `runs` they are of. One that fails has no errors.
     """
 
-    def timed(each: Setting, runs: int, warm_up: int = 0) -> Any:
-        def solve() -> Any:
-            if instants is None:
-                return each.model.path(design, **each.settings)
-            return each.model.swing(design, float(instants[-1]), **each.settings)
-
-        return measure(solve, repeat=runs, warm_up=warm_up, part=attrgetter("solve_s"))
-
     on_path = instants is None
+    timed = partial(_timed, design, None if instants is None else float(instants[-1]))
     errors = reference.largest_errors if on_path else reference.swing_errors
     rows: list[Row] = []
     times: list[list[tuple[float, float]]] = []
-    loaded: set[Any] = set()
+    loaded: set[tuple[str, ...]] = set()
     for each in watched(settings, progress):
-        row, kind = each.columns, (each.model, *each.settings, *each.settings.values())
-        kind = tuple(part for part in kind if not isinstance(part, int | float))
+        row = each.columns
         times.append([])
         try:
-            first = timed(each, 1, warm_up=int(kind not in loaded))
+            first = timed(each, repeat=1, warm_up=int(each.kind not in loaded))
             found = errors(first.result, limits[each.theory])
             rows.append(row | {"status": "converged", "message": ""} | found)
             times[-1] += zip(first.seconds, first.parts, strict=True)
         except (Unanswered, BadInput) as stopped:
             rows.append(row | {"status": "failed", "message": str(stopped)})
-        loaded.add(kind)
+        loaded.add(each.kind)
     table = pd.DataFrame(rows)
     judged = PATH_JUDGED if on_path else SWING_JUDGED
     firsts = [own[0][0] if own else math.nan for own in times]
@@ -103,10 +219,22 @@ def compared(
     for place in again:  # whose first run has prepared what it depends on
         times[place].clear()
     for _, place in product(range(passes), again):
-        more = timed(settings[place], int(min(RUNS, max(1.0, AFFORDED / firsts[place]))))
+        more = timed(settings[place], repeat=int(min(RUNS, max(1.0, AFFORDED / firsts[place]))), warm_up=0)
         times[place] += zip(more.seconds, more.parts, strict=True)
     whole, alone = np.transpose([np.median(own or [(math.nan, math.nan)], axis=0) for own in times])
     return table.assign(whole_s=whole, solve_s=alone, runs=list(map(len, times)))
+
+
+def _timed(design: Design, duration: float | None, each: Setting, **runs: int) -> Any:
+    """Return the answer of a setting to the path of a design, or to its motion of a duration [s], with its
+    times."""
+
+    def solve() -> Any:
+        if duration is None:
+            return each.model.path(design, **each.settings)
+        return each.model.swing(design, duration, **each.settings)
+
+    return measure(solve, part=attrgetter("solve_s"), **runs)
 
 
 def _rivals(rows: pd.DataFrame, judged: Sequence[str]) -> list[int]:
@@ -164,7 +292,7 @@ def advise(design: Design, error: float, progress: Progress = silent) -> pd.Data
         NoReference: the finite elements do not reach the end of the path.
     """
     pivot, own = isinstance(design, Problem), (spline, elements)
-    asked = [each for each in listed.paths() if each.model.installed() and (pivot or each.model in own)]
+    asked = [each for each in paths() if each.model.installed() and (pivot or each.model in own)]
     limits = {theory: path_limit(design, theory) for theory in {each.theory for each in asked}}
     rows = compared(asked, design, limits, passes=ADVISED, progress=progress)
     found = cheapest(rows, PATH_JUDGED, error)

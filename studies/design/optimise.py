@@ -14,23 +14,15 @@ round-off.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import lsq_linear, minimize, nnls
 
-from studies.design.evaluate import (
-    CENTRE_SHIFT,
-    STIFFNESS,
-    STRESS,
-    TRAVEL,
-    Accurate,
-    Answers,
-    Followed,
-    PathEnds,
-)
+from studies.design import evaluate
+from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, Answers, Followed
 from studies.design.question import Question
 from studies.errors import BadInput
 from studies.kinds import Array, Progress
@@ -42,6 +34,8 @@ OUTSIDE = -1e3
 LEAST_PRICE = 1e-6
 #: Margin below which a row is active [1].
 ACTIVE = 1e-6
+#: Signs of a quantity that is held to either side.
+SIDES = (1.0, -1.0)
 #: Starts of a search unless it says otherwise: the design to compare with and points spread over the bounds.
 STARTS = 8
 #: Part of a limit below which it is met [1].
@@ -86,7 +80,7 @@ class _Rows(NamedTuple):
     fall: float
 
 
-class Active(NamedTuple):
+class _Active(NamedTuple):
     """A constraint that holds an optimum back.
 
     price: relative change of the objective over a relative change of the limit, to first order [1].
@@ -126,7 +120,10 @@ class Programme:
             self.solved += 1
             try:
                 found = self.question.answers(self.question.values(y))
-            except (PathEnds, BadInput) as error:  # the model may refuse a design that is none of the case's
+            except (
+                evaluate.PathEnds,
+                BadInput,
+            ) as error:  # the model may refuse a design that is none of the case's
                 found, self.ended = None, str(error)
             self._last = (key, found)
         return self._last[1]
@@ -143,37 +140,27 @@ class Programme:
         the equality: stiffness, or travel, over the wanted one less one.
         """
         asked, name, eye = self.question, self.question.objective, np.eye(len(y))
-        if name == CENTRE_SHIFT:  # squares are smooth at zero, and t is then the square too
-            yield self._below(name, found.followed[name], self.scale**2, y[-1], eye[-1], signs=(1.0,))
-        else:
-            yield self._below(name, found.followed[name], self.scale, y[-1], eye[-1])
-        stress = self._below(STRESS, found.followed[STRESS], asked.allowable_stress, 1.0, 0.0 * eye[-1])
-        yield stress._replace(name="allowable stress" if name == STRESS else STRESS, fall=-1.0)
+        squared = name == CENTRE_SHIFT  # squares are smooth at zero, and t is then the square too
+        scale, signs = (self.scale**2, (1.0,)) if squared else (self.scale, SIDES)
+        yield _Rows(name, *self._below(found.followed[name], scale, signs, y[-1], by_t=1.0), 1.0)
+        stress = self._below(found.followed[STRESS], asked.allowable_stress, SIDES, 1.0)
+        yield _Rows("allowable stress" if name == STRESS else STRESS, *stress, -1.0)
         values, span = asked.values(y), np.append(asked.span, 0.0)
         for ratio in asked.ratios:
             side, limit = ratio.side / asked.variables[0].high, ratio.limit
             margin = side * (values[ratio.top] - limit * values[ratio.bottom])
             by = side * span * (eye[ratio.top] - limit * eye[ratio.bottom])
             yield _Rows(ratio.name, np.array([margin]), by[None], side * limit * values[ratio.bottom])
-        yield self._below(
-            STIFFNESS, found.followed[asked.held], asked.wanted, -1.0, 0.0 * eye[-1], signs=(-1.0,)
-        )
+        yield _Rows(STIFFNESS, *self._below(found.followed[asked.held], asked.wanted, (-1.0,), -1.0), 1.0)
 
     def _below(
-        self,
-        name: str,
-        found: Followed,
-        limit: float,
-        bound: float,
-        by_bound: Array,
-        signs: tuple[float, ...] = (1.0, -1.0),
-    ) -> _Rows:
-        """Return the rows of values over a limit that are to be below a bound, those of these signs."""
-        value, by = found.value / limit, np.pad(found.by * self.question.span / limit, ((0, 0), (0, 1)))
-        margin, jacobian = (
-            [of - sign * each for sign in signs] for of, each in ((bound, value), (by_bound, by))
-        )
-        return _Rows(name, np.concatenate(margin), np.concatenate(jacobian), 1.0)
+        self, found: Followed, limit: float, signs: Sequence[float], bound: float, by_t: float = 0.0
+    ) -> tuple[Array, Array]:
+        """Return margins and gradients of values over a limit, held below a bound to these sides."""
+        value, by = found.value / limit, found.by * self.question.span / limit
+        margins = [bound - sign * value for sign in signs]
+        jacobian = [np.pad(-sign * by, ((0, 0), (0, 1)), constant_values=by_t) for sign in signs]
+        return np.concatenate(margins), np.concatenate(jacobian)
 
     def _bounds(self, y: Array) -> Iterator[_Rows]:
         """Yield the bounds of the variables at a point y (N + 1,)."""
@@ -200,7 +187,7 @@ class Programme:
         free, signs = np.isfinite(margin), np.append(np.full(self._count - 1, -1.0), 1.0)
         return (signs * margin)[free], (signs[:, None] * jacobian)[free, :-1]
 
-    def conditions(self, y: Array, found: Answers) -> tuple[tuple[Active, ...], float]:
+    def conditions(self, y: Array, found: Answers) -> tuple[tuple[_Active, ...], float]:
         """Return the active constraints of a point y (N + 1,) [1] and the residual of the conditions [1].
 
         The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
@@ -213,7 +200,7 @@ class Programme:
             for margin, by in zip(rows.margin, rows.by, strict=True)
             if margin < ACTIVE
         ]
-        reached += [(held.name, sign, sign * held.by[0]) for sign in (1.0, -1.0)]
+        reached += [(held.name, sign, sign * held.by[0]) for sign in SIDES]
         multipliers, residual = nnls(np.column_stack([by for _, _, by in reached]), np.eye(len(y))[-1])
         prices: dict[str, float] = {}
         for (name, fall, _), multiplier in zip(reached, multipliers, strict=True):
@@ -221,7 +208,8 @@ class Programme:
         prices.pop(self.question.objective, None)
         whole = (2.0 if self.question.objective == CENTRE_SHIFT else 1.0) * y[-1]
         told = ((name, price / whole) for name, price in prices.items())
-        return tuple(Active(name, price) for name, price in told if abs(price) > LEAST_PRICE), float(residual)
+        active = tuple(_Active(name, price) for name, price in told if abs(price) > LEAST_PRICE)
+        return active, float(residual)
 
 
 def missed(question: Question, values: Array, found: Answers) -> str:
@@ -266,7 +254,7 @@ class Outcome:
     objective: float = math.nan
     violation: float = math.inf
     residual: float = math.nan
-    active: tuple[Active, ...] = ()
+    active: tuple[_Active, ...] = ()
 
     @property
     def converged(self) -> bool:
@@ -384,7 +372,7 @@ def search(question: Question, begin: Array, progress: Progress) -> list[Outcome
     return [optimise(question, start) for start in watched(list(begin), progress)]
 
 
-def settled(question: Question, found: Outcome) -> tuple[Outcome, Accurate]:
+def settled(question: Question, found: Outcome) -> tuple[Outcome, evaluate.Accurate]:
     """Return an optimum with the control points that its own answers take, found again with them if these are
     more than it was found with, and what it answers."""
     while True:

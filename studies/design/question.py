@@ -14,6 +14,7 @@ from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism, nearest
 from studies.cases.keys import SIDES
 from studies.cases.section import refuse_tapers
+from studies.design import evaluate
 from studies.design.evaluate import (
     CENTRE_SHIFT,
     CONTROL_POINTS,
@@ -21,10 +22,7 @@ from studies.design.evaluate import (
     STRESS,
     TRAVEL,
     VARIATION,
-    Accurate,
     Answers,
-    accurate,
-    answers,
 )
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -206,14 +204,14 @@ class Question:
         """
         design = self.start if values is None else self.design(values)
         names, chain = self._parameters(self.own if values is None else values)
-        return answers(design, control_points or self.control_points, names, chain)
+        return evaluate.answers(design, control_points or self.control_points, names, chain)
 
-    def accurate(self, values: Array | None = None) -> Accurate:
+    def accurate(self, values: Array | None = None) -> evaluate.Accurate:
         """Return the answers of a design with as many control points as its accuracy takes.
 
         values: variables (N,) in the file's units; None: those of the start.
         """
-        return accurate(lambda points: self.answers(values, points), self.quantities)
+        return evaluate.accurate(lambda points: self.answers(values, points), self.quantities)
 
     def _parameters(self, values: Array) -> tuple[list[str], Array]:
         """Return names (R,) of the sensitivities, and derivatives (R, N) by the variables, in SI units per

@@ -18,15 +18,8 @@ from matplotlib.figure import Figure
 
 from studies.cases.design import document_of
 from studies.cases.problem import named_case
-from studies.design.evaluate import (
-    CENTRE_SHIFT,
-    STIFFNESS,
-    STRESS,
-    VARIATION,
-    Answers,
-    Followed,
-    by_elements,
-)
+from studies.design import evaluate
+from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, VARIATION, Answers, Followed
 from studies.design.optimise import STARTS, Outcome, best, search
 from studies.design.question import Question
 from studies.effects.audit import with_sections
@@ -136,7 +129,7 @@ def _row(name: str, begun: str, basis: str, values: Array, found: Mapping[str, f
 def error(question: Question, values: Array, found: Answers) -> float:
     """Return the largest difference of all quantities of a design to those of the finite elements,
     relative [1]."""
-    elements = by_elements(question.design(values))
+    elements = evaluate.by_elements(question.design(values))
     return max(abs(found.quantities[name] / elements[name] - 1.0) for name in question.quantities)
 
 

@@ -127,7 +127,7 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
         motion = set_in_motion(system)
         start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
         highest = highest_frequency(motion, start)
-        modes = linear_modes(system, system.rest, motion.system.mass)[0]
+        modes = linear_modes(system, system.rest)[0]
     step = stability_limit(motion) / highest
     return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
 

@@ -6,7 +6,6 @@ the machine and on what else it does; the snapshots are the page's own canvas.
 
 import base64
 import io
-import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -22,6 +21,7 @@ from studies.engine import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.session import Session
 from studies.record.panels import Axis, Curves, Drawn, Level, Panel, sheet
+from studies.record.progress import measure
 from studies.record.style import BLACK, BLUE, GREY, RED, Look
 
 #: The paper's pictures a second.
@@ -141,9 +141,7 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
     swing."""
 
     def timed(work: str, repeat: int, frame: int, call: Callable[[], Any]) -> dict[str, Any]:
-        begin = time.perf_counter()
-        call()
-        took = 1e3 * (time.perf_counter() - begin)
+        took = 1e3 * measure(call, repeat=1, warm_up=0).median
         return {"preset": preset, "work": work, "repeat": repeat, "frame": frame, "time_ms": took}
 
     from studies.interactive.tracking.films import rotation

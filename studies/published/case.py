@@ -18,7 +18,8 @@ FOLDER = Path(__file__).parent / "cases"
 DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION = "displacement_x", "displacement_y", "rotation"
 LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION = "limit_load", "limit_points", "load_at_rotation"
 CENTRE_SHIFT = "centre_shift"
-#: Asked of a path; the others of a path with its critical points, or of a pivot.
+#: Asked of the end of a path, x, y and turn of a body; the others of a path with its critical points, or of a
+#: pivot.
 PLACES = (DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION)
 QUANTITIES = (*PLACES, LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION, CENTRE_SHIFT)
 EQUAL, AT_MOST = "equal", "at most"

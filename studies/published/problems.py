@@ -50,8 +50,8 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     if isinstance(design, Problem):  # the shift of the crossing point over the length at a rotation
         response = answer_static(replace(design, rotation=math.radians(value.at)), SETTINGS[model])
         found = float(np.hypot(*response.centre_shift[-1]) / design.length)
-    elif value.quantity in AXES:
-        found = _moved(name, model, answer, value.load)[AXES[value.quantity]]
+    elif value.quantity in case.PLACES:
+        found = _moved(name, model, answer, value.load)[case.PLACES.index(value.quantity)]
     else:
         arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
@@ -89,8 +89,6 @@ def _load_at_rotation(arc: Arc, value: Value) -> float:
 
 #: Turn from which a column counts as buckled [rad].
 TURNED = 0.05
-#: Quantity -> its place among those of a body.
-AXES = {case.DISPLACEMENT_X: 0, case.DISPLACEMENT_Y: 1, case.ROTATION: 2}
 OF_ARCS: dict[str, Callable[[Arc, Value], float]] = {
     case.LIMIT_LOAD: lambda arc, value: arc.critical_load(LIMIT, int(value.at) - 1),
     case.LIMIT_POINTS: lambda arc, value: float(sum(point.kind == LIMIT for point in arc.critical)),

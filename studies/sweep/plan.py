@@ -5,7 +5,7 @@ An error in the file is one line before anything is solved.
 
 import copy
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -30,45 +30,35 @@ from studies.sweep.varied import MOMENTS, SLENDERNESS
 #: Values of a key that varies: numbers, or other values as objects.
 Column = NDArray[Any]
 
-METHODS = ("grid", "list", "sobol")
 #: Most points, whose varied values are all in memory.
 MOST = 10_000_000
 POINTS = whole(1, MOST)
 FIELDS = ("from", "to", "points", "scale")
 #: Keys of [sample].
-_SAMPLE = tuple(
-    Key("sample", name, name, rule, optional=True)
-    for name, rule in {
-        "method": choice(*METHODS),
-        "points": POINTS,
-        "seed": whole(0, 2**32 - 1),
-        "chunk": POINTS,
-    }.items()
-)
+SAMPLE = {
+    "method": choice("grid", "list", "sobol"),
+    "points": POINTS,
+    "seed": whole(0, 2**32 - 1),
+    "chunk": POINTS,
+}
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 #: Most designs a chunk: a third of a second of static paths.
 CHUNK = 64
 #: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
 CHUNKS = 16
-#: Kind of an analysis -> key of an option, the keyword that it sets, and its rule.
-OPTIONS = {
+#: Kind of an analysis -> key of an option, the keyword that it sets, its rule and what it is if not given.
+OPTIONS: dict[str, tuple[tuple[str, str, Rule, Any], ...]] = {
     "static": (),
     "modes": (
-        ("rotation_deg", "rotation", ROTATION),
-        ("count", "count", whole(1, 100)),
-        ("held", "held", TRUTH),
+        ("rotation_deg", "rotation", ROTATION, None),
+        ("count", "count", whole(1, 100), 3),
+        ("held", "held", TRUTH, None),
     ),
     "release": (
-        ("duration_s", "duration", positive("s")),
-        ("step_s", "step", positive("s")),
-        ("integrator", "integrator", text("the name of an integrator")),
+        ("duration_s", "duration", positive("s"), 0.05),
+        ("step_s", "step", positive("s"), None),
+        ("integrator", "integrator", text("the name of an integrator"), None),
     ),
-}
-#: Options where the file does not say otherwise.
-STANDARD: dict[str, dict[str, Any]] = {
-    "static": {},
-    "modes": {"count": 3},
-    "release": {"duration": 0.05},
 }
 
 
@@ -127,10 +117,8 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         _require_known(where, "set", key, known)
         document.admitted(where, f"set.{key}", known[key], value)
     varied.put(case, fixed)
-    rules = varied.settings_rules(model).items()
-    keys = [Key("settings", name, name, rule, optional=True) for name, rule in rules]
-    settings = document.values(where, keys, tables["settings"], "settings")
-    asked = document.values(where, _SAMPLE, tables["sample"], "sample")
+    settings = _values(where, "settings", varied.settings_rules(model), tables["settings"])
+    asked = _values(where, "sample", SAMPLE, tables["sample"])
     columns = _sample_of(where, asked, tables["vary"], known)
     _refuse_overlaps(where, list(columns), case)
     kind, options = _analysis(where, tables["analysis"])
@@ -140,7 +128,6 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         case=case,
         model=model,
         settings=settings,
-        keys=tuple(columns),
         kind=kind,
         options=options,
         quantities=_quantities(where, tables["store"], found),
@@ -162,6 +149,14 @@ def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, An
             raise CaseError(f"{where}: {name}: got an unknown name, expected {expected}")
     tables = {name: document.table(where, content, name) for name in SECTIONS}
     return tables | {"settings": {document.present(key): value for key, value in tables["settings"].items()}}
+
+
+def _values(
+    where: str, label: str, rules: Mapping[str, Rule], given: Mapping[str, Any], needed: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return the values of a table by its keys, each admitted by its rule; CaseError without a needed one."""
+    keys = [Key(label, name, name, rule, optional=name not in needed) for name, rule in rules.items()]
+    return document.values(where, keys, given, label)
 
 
 def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
@@ -192,10 +187,11 @@ def _refuse_overlaps(where: str, keys: list[str], case: Mapping[str, Any]) -> No
 def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
     """Return kind and options of a task."""
     kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
-    rows = (("kind", "kind", choice(*KINDS)), *OPTIONS[kind])
-    keys = [Key("analysis", *row, optional=True) for row in rows]
-    found = STANDARD[kind] | document.values(where, keys, given, "analysis")
-    return kind, {name: value for name, value in found.items() if name != "kind"}
+    rows = (("kind", "kind", choice(*KINDS), kind), *OPTIONS[kind])
+    keys = [Key("analysis", name, keyword, rule, optional=True) for name, keyword, rule, _ in rows]
+    found = {keyword: usual for _, keyword, _, usual in rows if usual is not None}
+    found |= document.values(where, keys, given, "analysis")
+    return found.pop("kind"), found
 
 
 def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:
@@ -224,7 +220,7 @@ def _sample_of(
     where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Rule]
 ) -> dict[str, Column]:
     """Return the values (D,) of each key that varies, in the file's units, as the section [vary] and the
-    values of `_SAMPLE` say; CaseError as of `read_plan`."""
+    values of `SAMPLE` say; CaseError as of `read_plan`."""
     method = given.get("method", "grid")
     for name in ("points", "seed"):
         if name in given and method != "sobol":
@@ -319,9 +315,7 @@ def _range(where: str, label: str, given: Mapping[str, Any], rule: Rule, *, grid
     if "points" in given and not grid:
         raise CaseError(f"{where}: {label}.points: got it without a grid, expected sample.points alone")
     fields = {"from": rule, "to": rule, "points": POINTS, "scale": choice("linear", "log")}
-    optional = {"scale", "points"} - ({"points"} if grid else set())
-    keys = [Key(label, name, name, each, optional=name in optional) for name, each in fields.items()]
-    found = document.values(where, keys, given, label)
+    found = _values(where, label, fields, given, ("from", "to", "points") if grid else ("from", "to"))
     low, high, log = given["from"], given["to"], found.get("scale") == "log"
     if not low < high:
         got = f"an empty range from {shown(low)} to {shown(high)}"

@@ -50,7 +50,7 @@ class Task:
         model: as on the command line. settings: keywords of its settings.
         kind: of the analysis, one of `KINDS`.
         options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
-        keys: that are varied. quantities: names of what is stored.
+        quantities: names of what is stored.
     """
 
     where: str
@@ -59,7 +59,6 @@ class Task:
     settings: dict[str, Any]
     kind: str
     options: dict[str, Any]
-    keys: tuple[str, ...]
     quantities: tuple[str, ...]
 
     def design(self, values: Mapping[str, Any]) -> Design:
@@ -78,15 +77,13 @@ class Task:
 class _Column(NamedTuple):
     """A column of the table: what it means, and its value by the answer of a design.
 
-    `usual`: stored where the file does not say what is. `whole`: of whole numbers. `worth`: its value is by
-    the validity of the answer.
+    `usual`: stored where the file does not say what is. `whole`: of whole numbers.
     """
 
     meaning: str
     of: Callable[[Any], Any]
     usual: bool = True
     whole: bool = False
-    worth: bool = False
 
 
 def _standing(each: Quantity) -> _Column:
@@ -100,11 +97,6 @@ def _standing(each: Quantity) -> _Column:
         return math.nan
 
     return _Column(f"{each.meaning}, {each.standing}", standing)
-
-
-def _worth(meaning: str, of: Callable[[Any], Any], *, whole: bool = False) -> _Column:
-    """Return a column by the validity of an answer."""
-    return _Column(meaning, of, whole=whole, worth=True)
 
 
 def _variation(answer: Response) -> float:
@@ -155,14 +147,17 @@ PATH = {
         "largest magnitude of the driving torque", lambda a: np.abs(a.torque).max(), False
     ),
     "stress_end_Pa": _Column("largest stress of the strips at the end", lambda a: a.max_stress[-1], False),
-    "width_ratio": _worth("b/L, largest of the strips", attrgetter("width_ratio")),
-    "curvature_ratio": _worth("b^2/(R t), largest of strips and states", attrgetter("curvature_ratio")),
-    "thickness_ratio": _worth("t/L, largest of the strips", attrgetter("thickness_ratio")),
-    "strain_max": _worth("largest strain of strips and states", attrgetter("strain")),
-    "outside": _worth(
+}
+WORTH = {
+    "width_ratio": _Column("b/L, largest of the strips", attrgetter("width_ratio")),
+    "curvature_ratio": _Column("b^2/(R t), largest of strips and states", attrgetter("curvature_ratio")),
+    "thickness_ratio": _Column("t/L, largest of the strips", attrgetter("thickness_ratio")),
+    "strain_max": _Column("largest strain of strips and states", attrgetter("strain")),
+    "outside": _Column(
         "limits of the model that the answer lies beyond", lambda worth: len(worth.outside), whole=True
     ),
 }
+"""By the validity of an answer."""
 SHIFT = {
     "centre_shift_end_m": _Column(
         "displacement of the body's point at the strips' crossing, at the end", lambda a: _moved(a)[-1]
@@ -216,7 +211,7 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Column]:
         parts = named(design_of("case", case))
     except CaseError:  # only what is varied completes it
         parts = ()
-    return PATH | places | {each.name_in_sweep: _standing(each) for each in parts}
+    return PATH | WORTH | places | {each.name_in_sweep: _standing(each) for each in parts}
 
 
 def stored(task: Task) -> dict[str, _Column]:
@@ -227,8 +222,8 @@ def stored(task: Task) -> dict[str, _Column]:
 
 def values(found: Mapping[str, _Column], answer: Any) -> dict[str, float]:
     """Return the quantities of an answer in SI units."""
-    worth = validity(answer) if any(each.worth for each in found.values()) else None
-    return {name: float(each.of(worth if each.worth else answer)) for name, each in found.items()}
+    worth = validity(answer) if found.keys() & WORTH.keys() else None
+    return {name: float(each.of(worth if name in WORTH else answer)) for name, each in found.items()}
 
 
 def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.Table:

@@ -10,6 +10,7 @@ Its folder holds what it was made from, a part for each chunk, and in the end on
 Every file is written under another name and renamed when it is complete.
 """
 
+import asyncio
 import hashlib
 import json
 import logging
@@ -47,8 +48,6 @@ MANIFEST, TABLE, CSV = "sweep.json", "designs.parquet", "designs.csv"
 SUITE = "cross-axis-pivot-validation"
 #: Libraries whose version can change a number or a byte of the table.
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
-#: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
-SOURCES = ("studies.sweep.points", "studies.sweep.plan")
 
 
 class SweepError(BadInput):
@@ -102,7 +101,7 @@ def sweep(
 def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way.
 
-    An interruption may come while the queue is waited for: unlike `futures.wait`, it then leaves no locks.
+    An interruption may come while this waits for the queue: unlike `futures.wait`, it then leaves no locks.
     """
     ended: SimpleQueue[futures.Future[pa.Table]] = SimpleQueue()
     pending: dict[futures.Future[pa.Table], int] = {}
@@ -134,7 +133,7 @@ def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Tab
 
 def _said(error: BaseException) -> str:
     """Return kind and first line of an error."""
-    return f"{type(error).__name__}: {error}".splitlines()[0]
+    return f"{type(error).__name__}: {error}".splitlines()[0].removesuffix(": ")
 
 
 @contextmanager
@@ -158,16 +157,11 @@ def local_pool(workers: int | None = None) -> Iterator[Pool]:
 
 
 @contextmanager
-def cluster(
-    address: str, *, workers: int = 1, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
-) -> Iterator[Pool]:
-    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are so many.
+def cluster(address: str) -> Iterator[Pool]:
+    """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are any.
 
     Every worker needs the suite in the same version. The chunks of a lost worker go to others. The rows
     return to this process, which alone writes.
-
-    Args:
-        workers: least number [1]. timeout: for the scheduler [s]. workers_within: for the workers [s].
 
     Raises:
         BadInput: distributed is not installed, no scheduler answers, lacks workers or the suite; one line.
@@ -180,11 +174,13 @@ def cluster(
         ) from None
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by what is raised
-    with _refusing(address, "where no scheduler answers", "an address as tcp://HOST:PORT"):
-        client = Client(address, timeout=timeout, set_as_default=False)
-    with client:
-        with _refusing(address, "which lacks workers", f"one: dask worker {address}"):
-            client.wait_for_workers(workers, timeout=workers_within)
+    within = f"where no scheduler answers within {TIMEOUT:g} s"
+    with _refusing(address, within, "an address as tcp://HOST:PORT"):
+        asyncio.run(_require_scheduler(address))
+    with Client(address, timeout=TIMEOUT, set_as_default=False) as client:
+        within = f"which lacks workers after {WORKERS_WITHIN:g} s"
+        with _refusing(address, within, f"one: dask worker {address}"):
+            client.wait_for_workers(1, timeout=WORKERS_WITHIN)
         with _refusing(address, "whose workers cannot use the suite", "it to be installed there"):
             versions = client.run(suite)
         for worker, found in versions.items():
@@ -194,6 +190,16 @@ def cluster(
                     "expected the same everywhere"
                 )
         yield Pool(client.get_executor(pure=False), sum(client.nthreads().values()))
+
+
+async def _require_scheduler(address: str) -> None:
+    """Raise an error unless a scheduler answers there; a client that waits in vain takes long to give up."""
+    from distributed.core import rpc
+
+    async with rpc(address, timeout=TIMEOUT) as server:
+        kind = (await asyncio.wait_for(server.identity(), TIMEOUT))["type"]
+    if kind != "Scheduler":
+        raise ValueError(f"there is a {kind}")
 
 
 @contextmanager
@@ -296,7 +302,7 @@ def _manifest_of(plan: Plan) -> dict[str, Any]:
     columns |= {STATUS: "converged, not_converged, refused or failed", REASON: "why, or a remark; else empty"}
     columns |= {name: quantity.meaning for name, quantity in stored(plan.task).items()}
     return {
-        "inputs_sha256": _sha256(json.dumps(content, sort_keys=True)),
+        "inputs_sha256": hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest(),
         "inputs": content,
         "suite": suite(),
         "versions": {name: version(name) for name in LIBRARIES},
@@ -306,8 +312,7 @@ def _manifest_of(plan: Plan) -> dict[str, Any]:
 
 def suite() -> dict[str, str]:
     """Return which version of the suite this is: its number, and a hash of what the numbers follow from."""
-    source = "".join(source_hash(module) for module in SOURCES)
-    return {"version": version(SUITE), "source_sha256": _sha256(source)}
+    return {"version": version(SUITE), "source_sha256": source_hash("studies.sweep.plan")}
 
 
 def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
@@ -359,7 +364,3 @@ def _stream(tables: Iterator[pa.Table], writer_of: Any) -> None:
     with writer_of(first.schema) as writer:
         for table in chain((first,), tables):
             writer.write_table(table)
-
-
-def _sha256(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()

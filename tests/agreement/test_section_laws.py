@@ -224,7 +224,7 @@ def test_the_estimate_has_what_roots_leave(aside):
 
     springs, spread = torque(fe_reference, elements=80).torque, torque(spline_model)
     error = np.abs(spread.torque - springs).max() / np.abs(springs).max()
-    assert 0.5 * error < spread.estimate.torque < 3.0 * error
+    assert 0.5 * error < spread.estimate.errors["torque"] < 3.0 * error
     assert "torque" in spread.resolution
 
 

@@ -12,8 +12,7 @@ from studies.cases.problem import named_case
 from studies.cost.exudyn import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.settings import grid
-from studies.cost.tried import compared
+from studies.cost.tried import compared, grid
 from studies.errors import Unanswered
 from tests import gates
 

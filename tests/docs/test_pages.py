@@ -1,4 +1,4 @@
-"""Texts: blocks of pages work as written, words are standard terms; the API reference is whole, examples run."""
+"""Texts: blocks of pages work as written, words are standard terms, the API reference is whole."""
 
 import ast
 import doctest

@@ -1,4 +1,4 @@
-"""What is exported reads back as it was solved, in full or not at all, and docs/data.md describes all of it."""
+"""What is exported reads back as it was solved, in full or not at all; docs/data.md describes it."""
 
 import io
 import json
@@ -21,7 +21,7 @@ from studies.answers.quantities import QUANTITIES
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design, read_design
 from studies.cases.problem import FOLDER
-from studies.exchange import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, files, mesh, tables
+from studies.exchange import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, files, meshes, tables
 from studies.record.source import ROOT
 from studies.record.store import RESULTS
 
@@ -57,8 +57,8 @@ def test_vtk_reads_back(kind, tmp_path):
         (tmp_path / name).write_bytes(content)
     series = ElementTree.parse(tmp_path / f"{found.analysis}.pvd").getroot().findall("Collection/DataSet")
     assert [float(each.attrib["timestep"]) for each in series] == pytest.approx(found.values)
-    for state, each in enumerate(series):
-        read, made = meshio.read(tmp_path / each.attrib["file"]), mesh(found, state)
+    for made, each in zip(meshes(found), series, strict=True):
+        read = meshio.read(tmp_path / each.attrib["file"])
         assert np.array_equal(read.points, made.points)
         assert read.point_data.keys() == made.point_data.keys()
         for name, values in made.point_data.items():
@@ -72,7 +72,7 @@ def test_vtk_reads_back(kind, tmp_path):
 def test_mesh_holds_what_was_solved(kind):
     """Points, displacements, forces and parts of the mesh are those of the answer."""
     found = solved(kind)
-    last, made = len(found.values) - 1, mesh(found, len(found.values) - 1)
+    last, made = len(found.values) - 1, list(meshes(found))[-1]
     along, moves = found.along, found.analysis == "modes"
     strips, stations = along.rotation.shape[1:]
     count = strips * stations
@@ -226,7 +226,7 @@ def test_arrays_of_vtk_are_described():
     known = described("**VTK.**")
     points, cells = set(), set()
     for kind in ("static", "modes", "release"):
-        made = mesh(solved(kind), 0)
+        made = next(meshes(solved(kind)))
         points |= set(made.point_data)
         cells |= set(made.cell_data)
     assert {name for name, row in known.items() if row[1] == "points"} == points

@@ -1,4 +1,4 @@
-"""The page in a real browser: designs shaped by hand, files, screens of several sizes; answers of the commands."""
+"""The page in a real browser: designs shaped by hand, files, screens, answers of the commands."""
 
 import json
 import math

@@ -54,7 +54,7 @@ WORDS = {
     "--port 99999": "--port: got 99999, expected a free one (bind(): port must be 0-65535.)",
     "--camera 77": "--camera: got 77, expected the number of a camera that is connected",
     "--replay none.jsonl": "--replay: got none.jsonl, expected a session file",
-    "--record no/such/folder/x": "--record: got no/such/folder/x, expected a file that can be written",
+    "--record no/such/folder/x": "--record: no/such/folder/x: cannot be written (No such file or dir",
     "--calibration none.json": "none.json: got no camera",
 }
 

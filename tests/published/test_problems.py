@@ -1,4 +1,4 @@
-"""Published problems, values and answers; solids, and CalculiX beside them; the package that judges other codes."""
+"""Published problems and their values; solids, and CalculiX beside them; the judge of other codes."""
 
 import math
 import re

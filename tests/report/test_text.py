@@ -1,4 +1,4 @@
-"""The text types no number, quotes only what there is, as the tables have it, with digits as a reader expects."""
+"""The text types no number, quotes only what there is, as the tables have it, with its digits."""
 
 import re
 

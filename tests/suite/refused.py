@@ -15,7 +15,7 @@ CHANGED = {
     SIZE: [
         TAPER,
         (SIDES, MOMENTS, "strip.outer_fibre_m: got 0.0025, expected none"),
-        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body that is free to shift"),
+        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body free to shift"),
         ("[drive]", TOGETHER, 'drive.order: got "together", expected "loads first"'),
     ],
     "advise cross_axis_pivot": [TAPER],

@@ -13,7 +13,7 @@ import pytest
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import FOLDER
-from studies.cost import settings
+from studies.cost import tried
 from studies.cost.tried import cheapest, kept
 from studies.effects import audit as module
 from studies.effects import scenes
@@ -135,10 +135,10 @@ def few(monkeypatch):
     models = ("spline", "finite elements", "linear pivot", "pin joint", "four-bar")
     chosen = [
         each
-        for each in settings.paths()
+        for each in tried.paths()
         if each.model.name in models and each.theory == "material" and each.columns["fineness"] <= 40.0
     ]
-    monkeypatch.setattr(settings, "paths", lambda: chosen)
+    monkeypatch.setattr(tried, "paths", lambda: chosen)
 
 
 @pytest.mark.usefixtures("few")
@@ -146,8 +146,8 @@ def test_static_advice_as_json(command):
     """The command advises on Table 1: spline and elements meet 1e-2, by whole calls; no surrogate does."""
     document = json.loads(command("advise", CASE, "--accuracy", "1e-2", "--json", "-").out)
     found = {row["model"]: row for row in document["models"]}
-    assert set(found) == {settings.SPLINE, settings.ITSELF, settings.ELEMENTS, settings.SURROGATE}
-    for name in (settings.SPLINE, settings.ITSELF, settings.ELEMENTS):
+    assert set(found) == {tried.SPLINE, tried.ITSELF, tried.ELEMENTS, tried.SURROGATE}
+    for name in (tried.SPLINE, tried.ITSELF, tried.ELEMENTS):
         row = found[name]
         assert row["meets"]
         assert 0.0 < row["error_torque"] <= 1e-2
@@ -155,8 +155,8 @@ def test_static_advice_as_json(command):
         assert row["reference_uncertainty"] < 1e-4
         assert 0.0 < row["error_stress"] < 0.03
         assert row["reference_uncertainty_stress"] < 1e-4
-    assert not found[settings.SURROGATE]["meets"]
-    assert found[settings.SURROGATE]["error_stress"] is None
+    assert not found[tried.SURROGATE]["meets"]
+    assert found[tried.SURROGATE]["error_stress"] is None
 
 
 @pytest.mark.usefixtures("few")

@@ -65,7 +65,7 @@ def test_the_help_shows_a_file_that_works(tmp_path, capsys):
     path.write_text(text)
     asked = read_plan(path)
     assert asked.points == 4096
-    assert len(asked.task.keys) == 4
+    assert len(asked.columns) == 4
 
 
 def left_of(group: int, within: float = 60.0) -> list[str]:

@@ -16,7 +16,7 @@ from studies.cases.problem import named_case
 from studies.cases.section import of_sides
 from studies.sweep import points
 from studies.sweep.plan import Plan
-from studies.sweep.points import PATH, SHIFT, values
+from studies.sweep.points import PATH, SHIFT, WORTH, values
 from tests.sweep.sweeps import GRID, RANDOM, plan
 
 
@@ -30,7 +30,7 @@ def test_rows_are_what_solve_answers():
     """Requirement: a row of a pivot, whatever varies, has the numbers of `solve` to the last digit."""
     asked = plan(RANDOM.replace("points = 200", "points = 3"))
     for row in rows(asked).to_dict("records"):
-        given = {key: row[key] for key in asked.task.keys}
+        given = {key: row[key] for key in asked.columns}
         answer = answer_static(asked.task.design(given), SplineSettings())
         assert row["torque_Nm"] == answer.torque[-1]
         assert row["stress_max_Pa"] == answer.max_stress.max()
@@ -112,7 +112,7 @@ def test_values_are_those_of_the_answer(settings):
     """Requirement: quantities are those of `solve`, and stress_max_Pa and its kin the largest of all states,
     also of a path that relaxes."""
     answer = answer_static(UNBENT, settings)
-    found = values(PATH | SHIFT, answer)
+    found = values(PATH | WORTH | SHIFT, answer)
     stress, torque = answer.max_stress, np.abs(answer.torque)
     assert stress.max() > 1.2 * stress[-1] and torque.max() > 1.2 * torque[-1]  # the path does relax
     shift = np.hypot(*answer.centre_shift.T)
