@@ -256,12 +256,14 @@ def test_warm_start_needs_few_iterations():
 
 def test_mechanisms_of_one_structure_have_their_own_numbers():
     """A pivot solved behind one of other numbers has the answer of a pivot that shares nothing with it."""
-    alone = scene(DEFAULT_EFFECTS, pre_strain={"strain": 0.0})
+    alone = scene(spline.DEFAULT_EFFECTS, pre_strain={"strain": 0.0})
     for change in ({"length": 0.07}, {"inclination": 0.6}, {"area": 1e-6}, {"crossing_ratio": 0.3}):
-        solve_statics(cross_axis_pivot(**SIX), rotation=0.3, increments=2)
+        spline.solve_statics(spline.cross_axis_pivot(**SIX), rotation=0.3, increments=2)
         given = SIX | change
-        mine = solve_statics(cross_axis_pivot(**given), rotation=[0.5, -0.2], increments=2)
-        right = solve_statics(cross_axis_pivot(**given, **alone), rotation=[0.5, -0.2], increments=2)
+        mine = spline.solve_statics(spline.cross_axis_pivot(**given), rotation=[0.5, -0.2], increments=2)
+        right = spline.solve_statics(
+            spline.cross_axis_pivot(**given, **alone), rotation=[0.5, -0.2], increments=2
+        )
         size = np.abs(right.states).max(axis=0) + 1e-9
         assert np.abs((mine.states - right.states) / size).max() < 1e-8
         np.testing.assert_allclose(mine.torque, right.torque, rtol=1e-10, atol=1e-12)
