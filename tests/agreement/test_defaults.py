@@ -15,7 +15,7 @@ from studies.cases.design import Design
 from studies.commands.answer import not_estimated
 from studies.commands.release import SWINGS, _usual
 from tests.agreement.random_scenes import listed, scene
-from tests.agreement.test_loads_release import UNSTEADY
+from tests.agreement.test_loads import UNSTEADY
 from tests.models import extrapolated
 
 #: The default promises 1e-4; the estimate may be somewhat optimistic.
