@@ -20,17 +20,11 @@ class Outcome(NamedTuple):
 
 
 @pytest.fixture
-def table_1() -> str:
-    """Text of the case file of Table 1."""
-    return (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
-
-
-@pytest.fixture
-def case(tmp_path: Path, table_1: str) -> Callable[..., Path]:
+def case(tmp_path: Path) -> Callable[..., Path]:
     """Write the Table 1 case with texts replaced (old, new) and return its path."""
 
     def write(*replacements: tuple[str, str]) -> Path:
-        text = table_1
+        text = (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
         for old, new in replacements:
             assert old in text, f"{old!r} is not in the Table 1 case"
             text = text.replace(old, new)

@@ -93,7 +93,7 @@ def test_largest_stress_is_that_of_all_strips_and_sections():
     )
 
 
-def test_fingerprint_follows_values_not_layout(case, table_1):
+def test_fingerprint_follows_values_not_layout(case):
     """Comments leave the fingerprint of a problem as it is; a changed value changes it."""
     from studies.cases.design import fingerprint
 

@@ -1,4 +1,4 @@
-"""The committed results are fresh and what README.md says; the store is tidy, whole and the same every time."""
+"""The committed results are fresh and what README.md says; the store is tidy, whole and repeatable."""
 
 import gc
 import getpass

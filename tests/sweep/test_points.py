@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from studies.__main__ import main
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.validity import validity
@@ -19,7 +18,8 @@ from studies.cases.section import of_sides
 from studies.sweep import points
 from studies.sweep.plan import Plan
 from studies.sweep.points import PATH, SHIFT, WORTH, solve, values
-from tests.sweep.sweeps import GRID, RANDOM, plan
+from studies.sweep.run import sweep
+from tests.sweep.sweeps import GRID, RANDOM, plan, within
 
 
 def rows(asked: Plan, start=0, stop=None):
@@ -249,12 +249,9 @@ def test_bad_designs_are_one_line(change, words, tmp_path, refused):
     assert not out.exists()
 
 
-def test_the_good_file_is_good(tmp_path, capsys):
+def test_the_good_file_is_good(tmp_path):
     """The checks above refuse the change, not the file."""
-    path = tmp_path / "designs.toml"
-    path.write_text("\n".join(GOOD.values()))
-    assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 0
-    assert "8 designs solved" in capsys.readouterr().out
+    assert sweep(plan("\n".join(GOOD.values())), tmp_path / "out", pool=within()) == 8
 
 
 @pytest.mark.parametrize("part", ["strips", "bodies"])
