@@ -15,7 +15,7 @@ from studies.cases.design import named_design
 from studies.cases.effects import DEFAULT, Effects
 from tests import gates
 from tests.agreement.loaded import LOADS, design, solution
-from tests.table_one import TABLE_ONE
+from tests.table_one import TABLE_ONE, THINNER
 
 QUARTER = math.pi / 2
 DESIGNS = {
@@ -24,7 +24,7 @@ DESIGNS = {
     "crossing ratio 0.8": {"crossing_ratio": 0.8},
     "inclination 30 deg": {"inclination": math.radians(30)},
     "inclination 60 deg": {"inclination": math.radians(60)},
-    "ten times thinner": {"area": 5e-6, "second_moment_of_area": 1.041e-13},
+    "ten times thinner": THINNER,
     "centre off the plate": {"centre_offset": (0.01, -0.02)},
 }
 

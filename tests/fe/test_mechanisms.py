@@ -17,7 +17,7 @@ from tests.fe.scenes import GUIDE, PARAMETERS, SIDED, TIP, WIDE, four_bar, free_
 from tests.frames import heavy
 from tests.gates import hold
 from tests.models import QUICK_ELEMENTS, extrapolated, scene
-from tests.table_one import BARE, EI, MOMENT, TABLE_ONE
+from tests.table_one import BARE, EI, MOMENT, THINNER
 
 STATIC = {
     name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain", "spring")
@@ -93,12 +93,8 @@ def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> No
 @pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_stiffness_does_not_depend_on_the_order(element: str) -> None:
     """Whichever strip comes first, stiffness is the same: round-off of EA is not in it, however slender."""
-    thinner = {
-        "area": 0.1 * TABLE_ONE["area"],
-        "second_moment_of_area": 1e-3 * TABLE_ONE["second_moment_of_area"],
-    }
     given = pivot(crossing_ratio=0.35, element=element)
-    model = replace(given, strips=tuple(replace(strip, **thinner) for strip in given.strips))
+    model = replace(given, strips=tuple(replace(strip, **THINNER) for strip in given.strips))
     turned = replace(model, strips=model.strips[::-1])
     one, other = (fe.solve_statics(each, rotation=0.5, increments=4).stiffness for each in (model, turned))
     assert one[1:] == pytest.approx(other[1:], rel=1e-12)

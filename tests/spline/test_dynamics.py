@@ -11,7 +11,7 @@ import spline_model
 from tests import gates
 from tests.spline import scenes
 from tests.spline.scenes import QUARTER, drift, pivot, total
-from tests.table_one import SIDES, SIX, TABLE_ONE
+from tests.table_one import SIDES, SIX, TABLE_ONE, THINNER
 
 
 def released(settings=None, **options):
@@ -222,10 +222,7 @@ def test_a_long_step_names_the_mode_that_it_leaves_out():
 
 
 LIGHT = ("bending", "stretching", "body_inertia")
-SLENDER = TABLE_ONE | {
-    "area": TABLE_ONE["area"] / 10.0,
-    "second_moment_of_area": TABLE_ONE["second_moment_of_area"] / 1000.0,
-}
+SLENDER = TABLE_ONE | THINNER
 LONG_STEP = 1.75e-3
 
 
