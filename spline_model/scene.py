@@ -25,7 +25,7 @@ Kind = TypeVar("Kind", bound=Effect)
 T = TypeVar("T")
 
 
-def structural(make: Callable[[Any], T]) -> cached_property[T]:
+def _structural(make: Callable[[Any], T]) -> cached_property[T]:
     """Return a property that is made once for all scenes of one structure (``Scene.structure``)."""
     name = make.__name__
 
@@ -224,26 +224,26 @@ class Scene:
         vars(same).update(effects=aimed, _sorted={})
         return same
 
-    @structural
+    @_structural
     def driven_row(self) -> int | None:
         """Index in z of the driven rotation's torque, if there is one."""
         turned = self.turned
         held = zip(self.of(Constraint), self.layout.multipliers, strict=True)
         return next((row for each, (row, _) in held if each is turned), None)
 
-    @structural
+    @_structural
     def free_ends(self) -> tuple[str, ...]:
         """The strips whose tips are free, with a frame or without one."""
         held = {each.strip for each in self.of(Clamp) if each.end == "end" and not each.free}
         return tuple(strip.name for strip in self.strips if strip.name not in held)
 
-    @structural
+    @_structural
     def clamps(self) -> dict[tuple[str, str], slice]:
         """Rows of the clamps by strip and end, "start" or "end"."""
         held = enumerate(self.of(Constraint))
         return {(c.strip, c.end): self.layout.rows(i) for i, c in held if isinstance(c, Clamp)}
 
-    @structural
+    @_structural
     def layout(self) -> Layout:
         """The unknowns counted off: control points, bodies, axial forces, multipliers."""
         at, strips, bodies, modes, rows = 0, {}, {}, [], []

@@ -126,7 +126,7 @@ def stretching_law(v, speed, strain0, rigidity, measure):
 
 
 @part()
-def mixed_law(v, speed, strain0):
+def _mixed_law(v, speed, strain0):
     """Return the mixed stretching, N eps J0: its derivative in N, eps J0, whose own in v is 1; the one in v
     is N."""
     return (v / speed - 1.0 - strain0) * speed
@@ -140,7 +140,7 @@ def axial_laws(v, speed, strain, count, stretching, force, measure):
     """
     stored = by_v = by_vv = by_n = 0.0
     if count > 0:
-        by_v, by_n = force, mixed_law(v, speed, strain)
+        by_v, by_n = force, _mixed_law(v, speed, strain)
     if stretching.real > 0.0:
         stored, more, by_vv = stretching_law(v, speed, strain, stretching, measure)
         by_v += more

@@ -33,7 +33,7 @@ FURTHER = 2
 PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
 
 
-def sides_of(design: Design) -> list[Design]:
+def _sides_of(design: Design) -> list[Design]:
     """Return the designs of the rotations that a range takes: both of a pivot under loads, else one."""
     if design.crossing_point is None or set(design.effects.names) <= PLAIN:
         return [design]
@@ -45,7 +45,7 @@ def _held_states(design: Design) -> list[int]:
     without loads, before the body turns."""
     if design.crossing_point is None:
         return [0, -1]
-    return [-1] if len(sides_of(design)) == 1 else [design.increments, -1, 0]
+    return [-1] if len(_sides_of(design)) == 1 else [design.increments, -1, 0]
 
 
 class PathEnds(RuntimeError):
@@ -108,7 +108,7 @@ def answers(design: Design, control_points: int, parameters: Sequence[str], chai
         PathEnds: the static path does not reach the end of the range, or buckles on its way under the loads.
         BadInput: an effect or value that the model, or its sensitivities, reject; one line.
     """
-    sides = [_to_one_side(side, control_points, parameters, chain) for side in sides_of(design)]
+    sides = [_to_one_side(side, control_points, parameters, chain) for side in _sides_of(design)]
     stiffness, by_stiffness, shift, by_shift, stress, by_stress = map(_joined, zip(*sides, strict=True))
     shift, by_shift, held = shift - shift[0], by_shift - by_shift[0], _held_states(design)
     ratio = stiffness[1:] / stiffness[0]
@@ -208,7 +208,7 @@ def by_elements(design: Design) -> dict[str, float]:
         NoReference: they do not reach the end of the range.
     """
     turned, sides = slice(-design.increments - 1, None), []
-    for limit in map(reference, sides_of(design)):
+    for limit in map(reference, _sides_of(design)):
         shift = limit.centre
         if design.crossing_point is not None:
             shift = centre_shift(design.crossing_point, limit.rotation, limit.centre)
