@@ -222,14 +222,14 @@ def test_what_a_path_lacks_has_no_error():
 DURATION = 0.006
 
 
-def swung(n=6, **settings):
+#: What a release is asked for beside its design.
+ASKED = ("accuracy", "records", "integrator", "step", "start")
+
+
+def swung(n=6, duration=DURATION, **settings):
     """The release of Table 1 from a quarter turn, or with other settings."""
-    options = {"duration": DURATION} | {
-        name: settings.pop(name)
-        for name in ("duration", "accuracy", "records", "integrator", "step", "start")
-        if name in settings
-    }
-    return solve_release(scenes.pivot(control_points=n, **settings), **options)
+    asked = {name: settings.pop(name) for name in ASKED if name in settings}
+    return solve_release(scenes.pivot(control_points=n, **settings), duration=duration, **asked)
 
 
 @cache

@@ -167,10 +167,8 @@ def plate_error(**other):
     """Return the largest share by which the estimate of the clamps' plate action is off."""
     errors = []
     for width, nu, constant, linear in RITZ:
-        strip = validity.Strip(
-            length=1.0, width=width, thickness=0.01, youngs_modulus=1e9, density=1e3,
-            poisson_ratio=other.get("poisson_ratio", nu),
-        )  # fmt: skip
+        plate = {"width": width, "poisson_ratio": other.get("poisson_ratio", nu)}
+        strip = validity.Strip(length=1.0, thickness=0.01, youngs_modulus=1e9, density=1e3, **plate)
         pairs = zip(strip.clamped, (constant - 1.0, linear - 1.0), strict=True)
         errors += [abs(found / known - 1.0) for found, known in pairs]
     return max(errors)
