@@ -1,6 +1,5 @@
 """A pivot and mechanisms under loads, put to both models: what the tests of loads ask and compare."""
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -39,24 +38,6 @@ LOADS: dict[str, dict[str, Any]] = {
     "pre_strain": {"curvature": 3.0, "strain": 1e-4},
     "driven_displacement": {"displacement": (4e-4, -3e-4)},
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class State:
-    """The last state of a static path: what both models must agree on.
-
-    torque [N m]; stiffness [N m/rad]; place (3,) of the body [m, m, rad]; moments (G, 2) of the clamps on
-    the strips' roots and tips [N m]; axial (G, 2) forces there [N]; energy of strain and weight, from rest
-    [J]; path (S, 3) of the body.
-    """
-
-    torque: float
-    stiffness: float
-    place: np.ndarray
-    moments: np.ndarray
-    axial: np.ndarray
-    energy: float
-    path: np.ndarray
 
 
 def angle(rotation: float | None) -> str:
@@ -127,52 +108,30 @@ def solution(asked: Design, settings: Settings) -> tuple[Any, Any]:
     return found, posed.fields(found, found.states, "static")
 
 
-def state(asked: Design, settings: Settings) -> State:
-    """Return the last state of the path of `asked`."""
+@cache
+def state(asked: Design, settings: Settings) -> dict[str, np.ndarray]:
+    """Return the last state of the path of `asked`: what both models must agree on.
+
+    torque [N m]; stiffness [N m/rad]; moments (G, 2) of the clamps on the strips' roots and tips [N m]; axial
+    (G, 2) forces there [N]; energy of strain and weight, from rest [J]; path (S, 3) of the body [m, m, rad].
+    """
     found, fields = solution(asked, settings)
-    path = np.asarray(fields.bodies)[:, 0]
-    shear = getattr(found, "shear_energy", 0.0)
-    energy = found.bending_energy + found.axial_energy + shear + found.gravity_energy
-    return State(
-        torque=float(found.torque[-1]),
-        stiffness=float(found.stiffness[-1]),
-        place=path[-1],
-        moments=np.asarray(fields.reactions)[-1, :, :, 2],
-        axial=np.asarray(fields.axial_force)[-1][:, [0, -1]],
-        energy=float(energy[-1]),
-        path=path,
-    )
-
-
-def extrapolated(coarse: State, fine: State) -> State:
-    """Return the limit of elements of which `fine` has twice as many, whose error goes with h^2."""
-    names = State.__dataclass_fields__
-    return State(**{n: (4.0 * getattr(fine, n) - getattr(coarse, n)) / 3.0 for n in names})
-
-
-def differences(one: State, other: State) -> dict[str, float]:
-    """Return the largest differences over EI/L, EI/L^2 and L, by quantity [1]."""
-    unit = {
-        "torque": MOMENT_UNIT,
-        "stiffness": MOMENT_UNIT,
-        "path": np.array([LENGTH, LENGTH, 1.0]),
-        "moments": MOMENT_UNIT,
-        "axial": FORCE_UNIT,
-        "energy": MOMENT_UNIT,
-    }
+    energy = found.bending_energy + found.axial_energy + getattr(found, "shear_energy", 0.0)
     return {
-        name: float(np.max(np.abs(getattr(one, name) - getattr(other, name)) / scale))
-        for name, scale in unit.items()
+        "torque": found.torque[-1],
+        "stiffness": found.stiffness[-1],
+        "moments": np.asarray(fields.reactions)[-1, :, :, 2],
+        "axial": np.asarray(fields.axial_force)[-1][:, [0, -1]],
+        "energy": (energy + found.gravity_energy)[-1],
+        "path": np.asarray(fields.bodies)[:, 0],
     }
 
 
-@cache
-def spline(effect: str, rotation: float | None, control_points: int = 10) -> State:
-    """Return the state of the loaded design by the spline."""
-    return state(design(effect, rotation), SplineSettings(control_points=control_points))
-
-
-@cache
-def elements(effect: str, rotation: float | None, count: int = 20) -> State:
-    """Return the same by the finite elements."""
-    return state(design(effect, rotation), FeSettings(elements=count))
+def apart(asked: Design, control_points: int = 10) -> dict[str, float]:
+    """Return how far splines are from the limit of two meshes, over EI/L, EI/L^2 and L, by quantity [1]."""
+    coarse, fine = (state(asked, FeSettings(elements=count)) for count in (10, 20))
+    units = dict.fromkeys(coarse, np.array(MOMENT_UNIT))
+    units |= {"axial": np.array(FORCE_UNIT), "path": np.array([LENGTH, LENGTH, 1.0])}
+    limits = {name: (4.0 * fine[name] - coarse[name]) / 3.0 for name in fine}
+    found = state(asked, SplineSettings(control_points=control_points))
+    return {name: float(np.abs((found[name] - limits[name]) / units[name]).max()) for name in found}

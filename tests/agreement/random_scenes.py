@@ -150,11 +150,7 @@ def _four_bar(rng: Random) -> Mechanism:
         "coupler_rocker": ((span, 2 + arm), (span, 1 + arm), "coupler", "rocker"),
         "rocker_ground": ((span, 1), (span, 0), "rocker", "ground"),
     }
-    bodies = {
-        "crank": (0, 1 + 0.5 * arm),
-        "coupler": (0.5 * span, 2 + arm),
-        "rocker": (span, 1 + 0.5 * arm),
-    }
+    bodies = {"crank": (0, 1 + 0.5 * arm), "coupler": (0.5 * span, 2 + arm), "rocker": (span, 1 + 0.5 * arm)}
     return _mechanism(rng, _scale(rng), strips, bodies, _angle(rng, 15), most=0.4)
 
 

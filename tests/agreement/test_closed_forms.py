@@ -258,24 +258,15 @@ def test_pivots_of_tapered_strips_agree():
 def test_an_arc_of_any_opening_bends_as_its_length(models):
     """A moment at the end of an arc of 300 deg turns it by M s/EI, and it stays an arc."""
     chord, sagitta = 2.0 * math.sin(0.5 * OPENING), 1.0 - math.cos(0.5 * OPENING)  # of radius 1 m
-    section = {"width": 0.01, "thickness": 0.01}
-    moment = YOUNG * 0.01**4 / 12.0 * TURN / OPENING
+    section = {"width": 0.01, "thickness": 0.01, "rise": sagitta} | MATERIAL
+    given = {"applied_moment": {"moment": YOUNG * 0.01**4 / 12.0 * TURN / OPENING}}
     bent = (OPENING - TURN) / OPENING  # curvature of the end, clockwise from a start at half the opening
     angles = 0.5 * OPENING - np.array([0.0, OPENING - TURN])
     place = np.array([math.sin(angles[0]) - math.sin(angles[1]), math.cos(angles[1]) - math.cos(angles[0])])
 
     def error(**grid):
         def tip(**mesh):
-            strip = models.StripDesign(
-                name="arc", start=(0.0, 0.0), end=(chord, 0.0), rise=sagitta, tip="tip", **section, **MATERIAL
-            )
-            made = models.compliant_mechanism(
-                strips=[strip],
-                bodies=[models.BodyDesign(name="tip", centre=(chord, 0.0))],
-                effects=(*STATIC, "applied_moment"),
-                parameters={"applied_moment": {"moment": moment}},
-                **mesh,
-            )
+            made = one_strip(models, given, given, end=(chord, 0.0), section=section, **mesh)
             return models.solve_mechanism(made, increments=10).bodies["tip"][-1]
 
         return np.abs(refined(tip, **grid) - [*(place / bent), TURN]).max()

@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 
 import fe_reference
-import spline_model
-from spline_model import (
-    BodyDesign,
-    StripDesign,
-    compliant_mechanism,
-    sensitivities,
-    solve_many,
-    solve_mechanism,
-    solve_motion,
-)
+import spline_model as spline
 from tests import gates
 from tests.closed_forms import followed
 from tests.models import BOTH, held, refined, short
@@ -23,17 +14,17 @@ from tests.models import BOTH, held, refined, short
 #: A strip of unit length and rigidity, which the elements stretch a little, and the splines not at all.
 STRIP = {"start": (0.0, 0.0), "end": (1.0, 0.0), "area": 1e3, "second_moment_of_area": 1.0}
 STRIP |= {"youngs_modulus": 1.0, "poisson_ratio": 0.3, "density": 1e-3}
-AXIAL = {spline_model: "inextensible", fe_reference: "stretching"}
+AXIAL = {spline: "inextensible", fe_reference: "stretching"}
 #: The same, hardly stretched by elements either.
 STIFF = {"area": 1e8, "density": 1e-8}
 
 
-def beam(tip=None, models=spline_model, own=None, more=(), grid=None, **parameters):
+def beam(tip=None, models=spline, own=None, more=(), grid=None, **parameters):
     """A strip from the ground to a body, or to nothing, with these effects beside its elasticity."""
     names = ("bending", AXIAL[models], "strip_inertia", "body_inertia", *parameters)
     bodies = [models.BodyDesign(name=tip, centre=(1.0, 0.0), mass=1.0, moment_of_inertia=1.0)] if tip else []
     strip = models.StripDesign(name="beam", tip=tip, **STRIP | (own or {}))
-    grid = ({"control_points": 8} if models is spline_model else {"elements": 8}) | (grid or {})
+    grid = ({"control_points": 8} if models is spline else {"elements": 8}) | (grid or {})
     return models.compliant_mechanism(
         strips=[strip], bodies=[*bodies, *more], effects=names, parameters=parameters, **grid
     )
@@ -61,7 +52,7 @@ def test_a_tip_moment_rolls_up_three_turns():
 
     def error(segments=8):
         moment = {"strip": "beam", "force": (0.0, 0.0), "moment": 6.0 * math.pi}
-        path = solve_mechanism(
+        path = spline.solve_mechanism(
             beam(grid={"segments": segments}, tip_force=moment), increments=30, check=False
         )
         return np.abs(path.tips["beam"][:, 2] - 6.0 * math.pi * path.load_factor).max()
@@ -97,7 +88,7 @@ SPRINGS = [
 ]
 
 
-def hung(models=spline_model):
+def hung(models=spline):
     """The body without strips."""
     return models.BodyDesign(name="hung", centre=(1.0, -0.5), mass=0.5, moment_of_inertia=0.2)
 
@@ -118,7 +109,7 @@ def test_springs_bear_what_their_stiffness_says(models):
         return max(np.abs(each).max() for each in (turn, stored, missed))
 
     gates.hold(f"{short(models)}_springs", error)
-    if models is spline_model:
+    if models is spline:
         gates.check("spline_springs", error(method="multipliers"))
 
 
@@ -148,13 +139,13 @@ def test_columns_on_hinges_buckle_as_euler_has_it(joints, load, root, points, mo
         return np.abs(refined(found, **grid) - 1.0).sum()
 
     held(f"{short(models)}_hinges", models, error, points)
-    if models is spline_model:
+    if models is spline:
         gates.check("spline_hinges", error(method="multipliers", control_points=points))
 
 
 def offset(history=((0.0, 1.0), (0.05, 1.0), (0.3, -0.5))):
     """A body on springs, hinged to the beam beside its centre, with a load beside its centre as well."""
-    strip = StripDesign(name="beam", tip="end", tip_joint="hinge", **STRIP)
+    strip = spline.StripDesign(name="beam", tip="end", tip_joint="hinge", **STRIP)
     given = {
         "applied_force": [
             {"force": (0.5, -1.0), "at": (1.4, 0.3), "history": history},
@@ -162,9 +153,9 @@ def offset(history=((0.0, 1.0), (0.05, 1.0), (0.3, -0.5))):
         ],
         "spring": {"stiffness": (1.0, 2.0), "rotational_stiffness": 0.5},
     }
-    return compliant_mechanism(
+    return spline.compliant_mechanism(
         strips=[strip],
-        bodies=[BodyDesign(name="end", centre=(1.2, 0.1), mass=1.0, moment_of_inertia=0.5)],
+        bodies=[spline.BodyDesign(name="end", centre=(1.2, 0.1), mass=1.0, moment_of_inertia=0.5)],
         effects=("bending", "stretching", "strip_inertia", "body_inertia", *given),
         parameters=given,
         control_points=8,
@@ -176,7 +167,7 @@ def test_hinges_and_loads_go_with_their_body():
     system has the same states."""
 
     def error(lever=1.0):
-        path, other = (solve_mechanism(offset(), method=each) for each in ("condensed", "multipliers"))
+        path, other = (spline.solve_mechanism(offset(), method=each) for each in ("condensed", "multipliers"))
         x, y, turn = path.bodies["end"][-1]
         (fx, fy, moment), spring = (
             path.clamp_reactions[-1, 0, 1],
@@ -202,12 +193,12 @@ def carried(end=1.0, height=0.1, load=True, inertia=True, density=1e-3):
         given["applied_force"] = {"force": (0.5, -1.0), "at": (1.4, 0.3)}
     effects = ("bending", "stretching", "body_inertia", *given, *("strip_inertia",) * inertia)
     low = section | {"start": (0.0, -0.5), "end": (1.2, -0.4)}
-    return compliant_mechanism(
+    return spline.compliant_mechanism(
         strips=[
-            StripDesign(name="beam", tip="end", tip_joint="hinge", **section | {"end": (end, 0.0)}),
-            StripDesign(name="low", tip="end", root_joint="hinge", **low),
+            spline.StripDesign(name="beam", tip="end", tip_joint="hinge", **section | {"end": (end, 0.0)}),
+            spline.StripDesign(name="low", tip="end", root_joint="hinge", **low),
         ],
-        bodies=[BodyDesign(name="end", centre=(1.2, height), mass=1.0, moment_of_inertia=0.5)],
+        bodies=[spline.BodyDesign(name="end", centre=(1.2, height), mass=1.0, moment_of_inertia=0.5)],
         effects=effects,
         parameters=given,
         control_points=7,
@@ -220,9 +211,9 @@ def test_designs_with_hinges_have_derivatives_and_batches():
     names = ("beam.end_x", "end.centre_y")
 
     def solved(end=1.0, height=0.1):
-        return solve_mechanism(carried(end, height), rotation=0.4, increments=4)
+        return spline.solve_mechanism(carried(end, height), rotation=0.4, increments=4)
 
-    found = sensitivities(carried(), solved(), parameters=names)
+    found = spline.sensitivities(carried(), solved(), parameters=names)
 
     def error(step=1e-4):
         moved = [
@@ -238,7 +229,9 @@ def test_designs_with_hinges_have_derivatives_and_batches():
         return max(np.abs(each).max() for each in apart)
 
     gates.hold("spline_carried_derivatives", error)
-    batch = solve_many(carried(), {"beam.end_x": [1.0, 1.05], "end.centre_y": [0.1, 0.15]}, rotation=0.4)
+    batch = spline.solve_many(
+        carried(), {"beam.end_x": [1.0, 1.05], "end.centre_y": [0.1, 0.15]}, rotation=0.4
+    )
     for row, alone in enumerate((solved(), solved(1.05, 0.15))):
         np.testing.assert_allclose(batch.torque[row, -1], alone.torque[-1], rtol=1e-10)
         np.testing.assert_allclose(batch.stiffness[row, -1], alone.stiffness[-1], rtol=1e-9)
@@ -249,10 +242,10 @@ def test_all_motions_know_hinges():
     run = {"start": 0.4, "duration": 0.2, "check": False}
 
     def error(step=1e-3):
-        motion = solve_motion(carried(load=False), step=step, **run)
-        explicit = solve_motion(carried(load=False), integrator="leapfrog", records=50, **run)
-        light = solve_motion(carried(load=False, density=1e-12), step=step, **run)
-        massless = solve_motion(carried(load=False, inertia=False), step=step, **run)
+        motion = spline.solve_motion(carried(load=False), step=step, **run)
+        explicit = spline.solve_motion(carried(load=False), integrator="leapfrog", records=50, **run)
+        light = spline.solve_motion(carried(load=False, density=1e-12), step=step, **run)
+        massless = spline.solve_motion(carried(load=False, inertia=False), step=step, **run)
         pairs = ((motion, explicit), (light, massless))
         return max(np.abs(a.bodies["end"][-1] - b.bodies["end"][-1]).max() for a, b in pairs)
 
@@ -279,10 +272,10 @@ def test_followers_bend_strips_as_the_elastica_has_it(models):
     along = {"strip": "beam", "force": (-19.9, 0.0), "follower": True}
     path = models.solve_mechanism(beam(None, models, tip_force=along))
     assert path.critical_points == () and path.message == ""
-    if models is spline_model:
+    if models is spline:
         gates.check(gate, error(method="multipliers", control_points=14))
         both = [along | {"force": (-1e-9, 0.0)}, {"strip": "beam", "force": (-3.0, 0.0)}]
-        (found,) = solve_mechanism(beam(tip_force=both), check=False).critical_points
+        (found,) = spline.solve_mechanism(beam(tip_force=both), check=False).critical_points
         gates.check(gate, abs(12.0 * found.load_factor / math.pi**2 - 1.0))
 
 
@@ -312,7 +305,7 @@ def test_motions_keep_their_energy(gate, made, how):
     a motion is in the balance of energies over any step, and supports stay."""
 
     def error(booked=1.0):
-        run = solve_motion(made(), step=0.02, check=False, **how)
+        run = spline.solve_motion(made(), step=0.02, check=False, **how)
         assert run.status.value == "converged" and (made is not sprung or run.dissipated[-1] > 1e-2)
         energy = run.kinetic_energy + run.strain_energy - booked * (run.work - run.dissipated)
         moved = run.bodies["hung"][:, 0] - 1.0 if made is sprung else 0.0
@@ -327,7 +320,7 @@ def test_a_drive_that_begins_at_speed_carries_the_points_of_its_body():
     def moved(angle, **at):
         drive = {"angle": angle, "history": ((0.0, 0.0), (0.5, 1.0))}
         pulled = beam("end", applied_force={"force": (0.0, 0.2), **at}, driven_rotation=drive)
-        return solve_motion(pulled, start=None, duration=1.0, step=0.01, check=False).bodies["end"]
+        return spline.solve_motion(pulled, start=None, duration=1.0, step=0.01, check=False).bodies["end"]
 
     def error(angle=0.5):
         return np.abs(moved(0.5) - moved(angle, at=(1.5, 0.3))).max()

@@ -58,10 +58,7 @@ def strips(models, width, thickness, places=(0.0,), effects=(), parameters=None,
 
 @pytest.mark.parametrize(
     ("gate", "models"),
-    [
-        ("spline_plate_factors", spline_model),
-        pytest.param("fe_plate_factors", fe_reference, marks=SLOW),
-    ],
+    [("spline_plate_factors", spline_model), pytest.param("fe_plate_factors", fe_reference, marks=SLOW)],
     ids=["spline", "fe"],
 )
 def test_plate_factors_are_those_of_the_literature(gate, models):

@@ -15,7 +15,7 @@ from studies.cases.design import named_design
 from studies.cases.effects import DEFAULT, Effects
 from tests import gates
 from tests.agreement.loaded import LOADS, design, solution
-from tests.table_one import TABLE_ONE
+from tests.table_one import TABLE_ONE, THINNER
 
 QUARTER = math.pi / 2
 DESIGNS = {
@@ -24,28 +24,21 @@ DESIGNS = {
     "crossing ratio 0.8": {"crossing_ratio": 0.8},
     "inclination 30 deg": {"inclination": math.radians(30)},
     "inclination 60 deg": {"inclination": math.radians(60)},
-    "ten times thinner": {"area": 5e-6, "second_moment_of_area": 1.041e-13},
+    "ten times thinner": THINNER,
     "centre off the plate": {"centre_offset": (0.01, -0.02)},
 }
 
 
 @cache
-def spline(design="Table 1", rotation=QUARTER, **settings):
-    """Spline solution of a design."""
-    pivot = spline_model.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
-    return spline_model.solve_statics(pivot, rotation=rotation)
-
-
-@cache
-def finite_elements(design="Table 1", rotation=QUARTER, **settings):
-    """Finite-element solution of a design."""
-    pivot = fe_reference.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
-    return fe_reference.solve_statics(pivot, rotation=rotation)
+def solved(models, design="Table 1", rotation=QUARTER, **grid):
+    """Solution of a design by a model."""
+    pivot = models.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | grid))
+    return models.solve_statics(pivot, rotation=rotation)
 
 
 def refined(design, name, rotation=QUARTER):
     """Richardson value of a quantity from 40 and 80 elements, whose error goes with h^2 + O(h^4)."""
-    coarse, fine = (getattr(finite_elements(design, rotation, elements=n), name) for n in (40, 80))
+    coarse, fine = (getattr(solved(fe_reference, design, rotation, elements=n), name) for n in (40, 80))
     return (4 * fine - coarse) / 3
 
 
@@ -61,7 +54,7 @@ def relative_difference(found, reference):
 
 def differences(design="Table 1", rotation=QUARTER, control_points=8):
     """Of trajectory, torque and stiffness, against the refined finite elements."""
-    solution = spline(design, rotation, control_points=control_points)
+    solution = solved(spline_model, design, rotation, control_points=control_points)
     return {
         "trajectory": trajectory_difference(solution.centre, refined(design, "centre", rotation)),
         "torque": relative_difference(solution.torque, refined(design, "torque", rotation)),
@@ -77,8 +70,8 @@ def test_eight_control_points_meet_the_refined_elements(quantity):
 
 def papers_claim(control_points=4, **settings):
     """Trajectory difference and signed torque difference at 90 deg against 20 elements."""
-    found = spline(control_points=control_points, **settings)
-    reference = finite_elements(elements=20)
+    found = solved(spline_model, control_points=control_points, **settings)
+    reference = solved(fe_reference, elements=20)
     return (
         trajectory_difference(found.centre, reference.centre),
         found.torque[-1] / reference.torque[-1] - 1,

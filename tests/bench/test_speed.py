@@ -63,12 +63,7 @@ def test_release(benchmark):
 def test_batch(benchmark, threads):
     """Requirement: a batch of designs reaches every end, each with 25 iterations or fewer."""
     batch = benchmark(
-        solve_many,
-        designs(),
-        rotation=QUARTER_TURN,
-        increments=INCREMENTS,
-        threads=threads,
-        control_points=6,
+        solve_many, designs(), rotation=QUARTER_TURN, increments=INCREMENTS, threads=threads, control_points=6
     )
     benchmark.extra_info.update(designs=DESIGNS, newton_iterations=int(batch.iterations.sum()))
     assert batch.converged.all()

@@ -7,9 +7,9 @@ import pytest
 
 from studies.__main__ import main
 from studies.cases.design import document_of
-from studies.cases.problem import FOLDER, named_case
+from studies.cases.problem import named_case
 from studies.design.question import Question
-from tests.exchange.test_data_page import described
+from tests.exchange.test_files import described
 
 FINDS = Path(__file__).parent.parent / "suite" / "finds"
 CASE = "cross_axis_pivot"
@@ -53,34 +53,6 @@ def test_a_case_without_an_answer_says_why(capsys):
     told = capsys.readouterr().err
     assert "the case itself has no answer over the range: limit point at 44.9" in told
     assert told.count("\n") == 1
-
-
-SIDES = "width_m = 0.01000320153681966\nthickness_m = 0.0049983997439180475"
-MOMENTS = "area_m2 = 5e-5\nsecond_moment_m4 = 1.041e-10\nouter_fibre_m = 0.0025"
-LED = """effects = ["+driven_displacement"]
-[effects.driven_displacement]
-displacement_m = [0, 0]
-[strip]"""
-
-
-@pytest.mark.parametrize(
-    ("begin", "instead", "message"),
-    [
-        (SIDES, MOMENTS, "strip.outer_fibre_m: got 0.0025, expected none"),
-        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body free to shift"),
-        (
-            "[drive]",
-            '[scene]\neffects = ["+gravity"]\n[drive]\norder = "together"',
-            'drive.order: got "together", expected "loads first"',
-        ),
-    ],
-)
-def test_cases_that_cannot_be_sized(begin, instead, message, tmp_path, refused):
-    """Sections that are no rectangles, bodies that are led, and loads that grow are refused in one line."""
-    text = (FOLDER / "cross_axis_pivot.toml").read_text()
-    path = tmp_path / "case.toml"
-    path.write_text(text.replace(begin, instead))
-    refused("size", path, *QUICK, says=message)
 
 
 @pytest.mark.slow

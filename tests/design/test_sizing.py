@@ -7,24 +7,17 @@ import numpy as np
 import pytest
 
 from studies.cases.design import document_of
-from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds
+from studies.cases.document import parsed
+from studies.cases.problem import FOLDER
+from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, PathEnds
 from studies.design.optimise import OUTSIDE, Programme, numbered, optimise, search
 from studies.design.question import Question
-from studies.design.sizing import (
-    AGAIN,
-    BEAMS,
-    EFFECTS,
-    TABLE_ONE,
-    asked,
-    error,
-    sizes_of,
-    toleranced,
-)
+from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TABLE_ONE, asked, error, sizes_of, toleranced
 from studies.errors import BadInput
 from studies.record.progress import silent
 from studies.record.store import Store
 from tests import gates
-from tests.design.gradients import gradient_error
+from tests.models import extrapolated
 
 #: Start of the searches that is twenty times outside.
 FAR = 2
@@ -169,3 +162,67 @@ def test_factor_over_table_one(gate, design, column):
     for limit in ("stiffness_Nm_per_rad", "largest_stress_Pa"):
         assert there[limit] > 1.01 * own[limit]
         assert again[limit] == pytest.approx(own[limit], rel=1e-6)
+
+
+FREE = (
+    "section.thickness_m",
+    "strips.crank_coupler.end_m.y=0.09:0.11",
+    "bodies.coupler.centre_m.x=0.04:0.06",
+)
+SHARED = "strips.left.end_m.y,strips.right.end_m.y=0.09:0.11"
+
+
+def task(name, texts, **given):
+    """The question about a case that comes with the suite."""
+    return Question.of(name, parsed(FOLDER / f"{name}.toml"), texts, **given)
+
+
+@pytest.mark.parametrize(
+    ("name", "texts", "objective"),
+    [
+        pytest.param("four_bar_of_flexures", FREE, VARIATION, marks=pytest.mark.slow),
+        ("parallel_strip_guide", ("section.width_m", SHARED), STRESS),
+        ("living_hinge", ("section.thickness_m", "material.youngs_modulus_Pa"), STRESS),
+    ],
+)
+def test_gradients_by_numbers_of_a_file(name, texts, objective):
+    """Rows and Jacobian fit together for sections, moduli, places, and values that several keys share."""
+    asked = task(name, texts, objective=objective, wanted=1.0, allowable_stress=1e9)
+    gates.hold("sizing_gradients", lambda **steps: gradient_error(asked, asked.own, **steps))
+
+
+def test_a_number_stands_for_the_sections_of_all_strips():
+    """The width of all sections, given by A and I, moves area and second moment of each strip."""
+    asked = task("four_bar_of_flexures", ["section.width_m"], objective=STRESS)
+    (number,) = asked.variables
+    assert (number.own, number.low, number.high) == pytest.approx((0.01, 0.005, 0.02))
+    wide = asked.design(np.array([0.02]))
+    for strip, own in zip(wide.strips, asked.start.strips, strict=True):
+        assert strip.second_moment_of_area == pytest.approx(2.0 * own.second_moment_of_area)
+
+
+#: First step of differences, of a variable's bounds, and how often it is halved.
+STEP, LEVELS = 0.01, 4
+
+
+def gradient_error(task, values, levels=LEVELS):
+    """Return the largest error of the gradients that the optimiser is given at a design (N,), against
+    differences [1].
+
+    Central differences of halved steps, extrapolated; relative to the largest derivative of the same rows by
+    any variable, over the bounds.
+    """
+    programme = Programme(question=task)
+    y = np.append(task.scaled(values), 1.0)
+    exact = programme.rows(y)[1]
+    errors = np.zeros_like(exact)
+    for i, unit in enumerate(np.eye(len(y))):
+        found = []
+        for step in (STEP / 2**level * unit for level in range(levels)):
+            up, down = (programme.rows(each)[0] for each in (y + step, y - step))
+            found.append((up - down) / (2.0 * step[i]))
+        errors[:, i] = np.abs(exact[:, i] - extrapolated(found))
+    limits = programme.limits(y, programme.answers(y))
+    names = np.array([name for rows in limits for name in [rows.name] * len(rows.margin)])
+    parts = [(errors[names == name].max(), np.abs(exact[names == name]).max()) for name in set(names)]
+    return float(max(error / largest for error, largest in parts if largest > 0.0))

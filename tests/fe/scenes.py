@@ -1,21 +1,14 @@
-"""What the tests of the elements share: the pivot, a cantilever, a parallel-strip guide, a four-bar."""
+"""What the tests of the elements share: the pivot, a cantilever, a four-bar."""
 
 from collections.abc import Mapping
 from typing import Any
 
-from fe_reference import (
-    DEFAULT_EFFECTS,
-    BodyDesign,
-    Model,
-    StripDesign,
-    compliant_mechanism,
-    cross_axis_pivot,
-)
+import fe_reference as fe
 from tests.models import scene
 from tests.table_one import SECTION, TABLE_ONE
 
 Parameters = Mapping[str, Any]
-#: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
+#: Length of the cantilever [m], width of the four-bar, and length of its links.
 GUIDE, APART, LINK = 0.1, 0.05, 0.06
 #: Effects of bodies on strips without inertia.
 MASSLESS = ("bending", "stretching", "body_inertia")
@@ -40,9 +33,9 @@ WIDE, THICK = BARE | {"width": 0.02, "thickness": 0.001}, BARE | {"width": 0.02,
 SIDED_SCENE = {name: given for name, given in PARAMETERS.items() if name != "pre_strain"} | SIDED
 
 
-def pivot(**changes: Any) -> Model:
+def pivot(**changes: Any) -> fe.Model:
     """Return the paper's pivot with some parameters changed."""
-    return cross_axis_pivot(**{**TABLE_ONE, **changes})
+    return fe.cross_axis_pivot(**{**TABLE_ONE, **changes})
 
 
 def free_cantilever(
@@ -50,55 +43,42 @@ def free_cantilever(
     length: float = GUIDE,
     section: Mapping[str, float] = SECTION,
     parameters: Parameters | None = None,
-    effects: tuple[str, ...] = DEFAULT_EFFECTS,
+    effects: tuple[str, ...] = fe.DEFAULT_EFFECTS,
     root: str | None = "ground",
     **discretisation: Any,
-) -> Model:
+) -> fe.Model:
     """Return a horizontal strip, clamped on the left, with a free tip."""
-    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), root=root, tip=None, **section)
-    return compliant_mechanism(strips=[strip], **scene(effects, **parameters or {}), **discretisation)
+    strip = fe.StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), root=root, tip=None, **section)
+    return fe.compliant_mechanism(strips=[strip], **scene(effects, **parameters or {}), **discretisation)
 
 
 #: A body without mass at the tip of a strip.
-TIP = BodyDesign(name="tip", centre=(GUIDE, 0.0))
+TIP = fe.BodyDesign(name="tip", centre=(GUIDE, 0.0))
 
 
 def tipped(
-    *bodies: BodyDesign,
+    *bodies: fe.BodyDesign,
     strip: Parameters | None = None,
     elements: int = 20,
     element: str = "corotational",
     **given: Any,
-) -> Model:
+) -> fe.Model:
     """Return a horizontal strip with the first of the bodies at its tip, and effects by their parameters."""
     along = {"start": (0.0, 0.0), "end": (GUIDE, 0.0), "tip": bodies[0].name} | SECTION | dict(strip or {})
-    effects = scene(DEFAULT_EFFECTS, **given)
-    strips = [StripDesign(name="strip", **along)]
-    return compliant_mechanism(strips=strips, bodies=bodies, elements=elements, element=element, **effects)
-
-
-def guide(
-    parameters: Parameters | None = None, *, section: Mapping[str, float] = SECTION, **discretisation: Any
-) -> Model:
-    """Return a stage on two parallel strips."""
-    strips = [
-        StripDesign(name=name, start=(x, 0.0), end=(x, GUIDE), tip="stage", **section)
-        for name, x in (("left", 0.0), ("right", APART))
-    ]
-    stage = BodyDesign(name="stage", centre=(0.5 * APART, GUIDE), mass=0.2, moment_of_inertia=1e-4)
-    given = scene(DEFAULT_EFFECTS, **parameters or {})
-    return compliant_mechanism(strips=strips, bodies=[stage], **given, **discretisation)
+    effects = scene(fe.DEFAULT_EFFECTS, **given)
+    strips = [fe.StripDesign(name="strip", **along)]
+    return fe.compliant_mechanism(strips=strips, bodies=bodies, elements=elements, element=element, **effects)
 
 
 def four_bar(
     parameters: Parameters | None = None,
     *,
-    effects: tuple[str, ...] = DEFAULT_EFFECTS,
+    effects: tuple[str, ...] = fe.DEFAULT_EFFECTS,
     short: float = 0.02,
     rise: float = 0.0,
     section: Mapping[str, float] = SECTION,
     **discretisation: Any,
-) -> Model:
+) -> fe.Model:
     """Return a parallelogram of crank, coupler and rocker with a strip of length `short` in every joint.
 
     All strips stand upright at rest; the rocker's lower strip runs from the rocker to ground.
@@ -111,7 +91,7 @@ def four_bar(
         ("d", (APART, low), (APART, 0.0), "rocker", "ground"),
     )
     strips = [
-        StripDesign(name=name, start=start, end=end, root=root, tip=tip, rise=rise, **section)
+        fe.StripDesign(name=name, start=start, end=end, root=root, tip=tip, rise=rise, **section)
         for name, start, end, root, tip in joints
     ]
     centres = {
@@ -120,8 +100,8 @@ def four_bar(
         "rocker": (APART, 0.5 * (low + high)),
     }
     bodies = [
-        BodyDesign(name=name, centre=centre, mass=0.1, moment_of_inertia=1e-4)
+        fe.BodyDesign(name=name, centre=centre, mass=0.1, moment_of_inertia=1e-4)
         for name, centre in centres.items()
     ]
     given = scene(effects, **parameters or {})
-    return compliant_mechanism(strips=strips, bodies=bodies, **given, **discretisation)
+    return fe.compliant_mechanism(strips=strips, bodies=bodies, **given, **discretisation)

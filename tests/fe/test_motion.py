@@ -1,21 +1,12 @@
 """Motion and modes: closed forms, balance of energies, drives, masses, steps that are too long."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_reference import (
-    DEFAULT_EFFECTS,
-    ELEMENTS,
-    BodyDesign,
-    ConvergenceError,
-    DrivenRotation,
-    Model,
-    Status,
-    natural_frequencies,
-    solve_motion,
-    solve_release,
-)
+import fe_reference as fe
 from fe_reference.drives import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
 from fe_reference.structure import Structure, structure_of
@@ -40,7 +31,7 @@ QUARTER = np.pi / 2.0
 def test_run_is_described() -> None:
     """A trajectory carries its step, its limit and its work, and samples as asked, the start first."""
     calls: list[tuple[int, int]] = []
-    motion = solve_release(
+    motion = fe.solve_release(
         pivot(), start=0.5, duration=1e-4, samples=10, progress=lambda *call: calls.append(call)
     )
     assert len(motion.time) == 11 == len(calls) + 1
@@ -53,15 +44,9 @@ def test_run_is_described() -> None:
 
 def test_implicit_step_without_solution_ends_the_run() -> None:
     """A step that no halving makes solvable ends the run with the motion until then."""
-    motion = solve_release(
-        pivot(),
-        start=QUARTER,
-        duration=10.0,
-        step=1.0,
-        integrator="generalised-alpha",
-        raise_on_failure=False,
-    )
-    assert motion.status is not Status.CONVERGED
+    how: dict[str, Any] = {"integrator": "generalised-alpha", "raise_on_failure": False}
+    motion = fe.solve_release(pivot(), start=QUARTER, duration=10.0, step=1.0, **how)
+    assert motion.status is not fe.Status.CONVERGED
     assert motion.message != ""
     assert len(motion.time) >= 1
 
@@ -69,11 +54,11 @@ def test_implicit_step_without_solution_ends_the_run() -> None:
 def test_an_implicit_step_that_is_too_long_is_told() -> None:
     """A step of 1 ms on a swing whose strips follow within it: halved where it gains energy, and told."""
     settings = {"start": 1.0, "duration": 0.02, "integrator": "generalised-alpha", "check": False}
-    motion = solve_release(pivot(elements=10), **settings, step=1e-3)
+    motion = fe.solve_release(pivot(elements=10), **settings, step=1e-3)
     assert motion.counters["halvings"] > 0
     assert motion.energy_error < 0.01
     assert "steps in a mean period" in motion.resolution
-    sound = solve_release(pivot(elements=10), **settings, step=1e-4)
+    sound = fe.solve_release(pivot(elements=10), **settings, step=1e-4)
     assert motion.rotation[-1] == pytest.approx(sound.rotation[-1], abs=0.05)
     assert sound.resolution == ""
     assert list(sound.columns())[:4] == ["time_s", "x_m", "y_m", "rotation_rad"]
@@ -82,19 +67,21 @@ def test_an_implicit_step_that_is_too_long_is_told() -> None:
 def test_explicit_is_stable_and_keeps_its_energy() -> None:
     """At 0.9 of the limit the energy after release from 90 degrees stays; at 1.1 it does not."""
 
-    brief = solve_release(pivot(), start=QUARTER, duration=1e-5, check=False)
+    brief = fe.solve_release(pivot(), start=QUARTER, duration=1e-5, check=False)
     limit = float(brief.settings["critical_step_s"])
 
     def error(safety: float = 0.9) -> float:
-        motion = solve_release(
+        motion = fe.solve_release(
             pivot(), start=QUARTER, duration=0.01, samples=200, step=safety * limit, raise_on_failure=False
         )
-        return motion.energy_error if motion.status is Status.CONVERGED else np.inf
+        return motion.energy_error if motion.status is fe.Status.CONVERGED else np.inf
 
     hold("fe_explicit_energy", error)
-    with pytest.raises(ConvergenceError, match=r"the energy grew from .* use a smaller time step") as failure:
-        solve_release(pivot(), start=QUARTER, duration=0.002, step=1.1 * limit)
-    assert failure.value.solution.status is Status.UNSTABLE
+    with pytest.raises(
+        fe.ConvergenceError, match=r"the energy grew from .* use a smaller time step"
+    ) as failure:
+        fe.solve_release(pivot(), start=QUARTER, duration=0.002, step=1.1 * limit)
+    assert failure.value.solution.status is fe.Status.UNSTABLE
 
 
 EXPLICIT, IMPLICIT = "central-difference", "generalised-alpha"
@@ -109,7 +96,7 @@ def test_free_fall_against_drag(integrator: str) -> None:
 
     def error(step: float = 1e-6) -> float:
         model = free_cantilever(length=1.0, parameters=given, root=None, elements=4)
-        motion = solve_motion(model, settled=False, duration=duration, step=step, integrator=integrator)
+        motion = fe.solve_motion(model, settled=False, duration=duration, step=step, integrator=integrator)
         fallen = -motion.shape[-1, 0, :, 1]
         return float(np.abs(fallen / exact - 1.0).max())
 
@@ -122,9 +109,9 @@ def test_impulse_of_a_load() -> None:
     force = {"force": (30.0, -20.0), "history": history}
 
     def error(step: float = 1e-6) -> float:
-        body = BodyDesign(centre=(1.2 * GUIDE, 0.01), mass=0.01, moment_of_inertia=1e-5)
+        body = fe.BodyDesign(centre=(1.2 * GUIDE, 0.01), mass=0.01, moment_of_inertia=1e-5)
         model = tipped(body, strip={"root": None}, elements=5, applied_force=force)
-        motion = solve_motion(model, duration=2e-3, step=step, samples=4, settled=False, check=False)
+        motion = fe.solve_motion(model, duration=2e-3, step=step, samples=4, settled=False, check=False)
         masses = SECTION["area"] * SECTION["density"] * GUIDE / 5.0 * np.array([0.5, 1.0, 1.0, 1.0, 1.0, 0.5])
         moments = masses @ motion.shape[:, 0] + 0.01 * motion.bodies["body"][:, :2]
         momentum = (moments[-1] - moments[1]) / (motion.time[-1] - motion.time[1])  # behind the force
@@ -136,7 +123,7 @@ def test_impulse_of_a_load() -> None:
 
 
 @pytest.mark.parametrize("wide", [False, True], ids=["every", "sides"])
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_motion_balance(element: str, wide: bool) -> None:
     """With every effect the energies balance with work and dissipation in the explicit integrator, those of
     wide strips and their roots in place of the natural strains."""
@@ -144,7 +131,7 @@ def test_motion_balance(element: str, wide: bool) -> None:
 
     def error(integrator: str = EXPLICIT, step: float | None = None) -> float:
         model = four_bar(parameters, section=section, elements=5, element=element)
-        motion = solve_motion(
+        motion = fe.solve_motion(
             model, body="crank", start=0.5, duration=2e-3, integrator=integrator, step=step, samples=100
         )
         assert motion.dissipated[-1] > 0.05 * motion.strain_energy[0]
@@ -158,9 +145,9 @@ def test_start_from_rest_and_settled() -> None:
     """Under gravity a scene starts in equilibrium and stays there, or starts at rest and falls."""
     gravity = {"gravity": {"acceleration": (0.0, -200.0)}}
     model = four_bar(gravity, elements=4)
-    still = solve_motion(model, duration=1e-4)
+    still = fe.solve_motion(model, duration=1e-4)
     assert still.kinetic_energy.max() < 1e-12 * abs(still.gravity_energy[0])
-    falling = solve_motion(model, duration=1e-4, settled=False)
+    falling = fe.solve_motion(model, duration=1e-4, settled=False)
     assert falling.kinetic_energy[-1] > 0.0
     assert falling.gravity_energy[-1] < 0.0
     assert falling.bodies["crank"].shape == falling.rates["crank"].shape == (len(falling.time), 3)
@@ -170,7 +157,9 @@ def test_rates_are_the_derivatives_of_the_places() -> None:
     """The reported rates of the bodies are the slopes of their motion."""
 
     def error(samples: int = 400) -> float:
-        motion = solve_motion(four_bar(elements=4), body="crank", start=0.5, duration=1e-4, samples=samples)
+        motion = fe.solve_motion(
+            four_bar(elements=4), body="crank", start=0.5, duration=1e-4, samples=samples
+        )
         places, rates = (np.array(list(each.values())) for each in (motion.bodies, motion.rates))
         slopes = np.gradient(places, motion.time, axis=1, edge_order=2)
         apart = np.abs(slopes - rates).max(axis=(1, 2)) / np.abs(rates).max(axis=(1, 2))
@@ -183,7 +172,7 @@ def test_rates_are_the_derivatives_of_the_places() -> None:
 WAYS = pytest.mark.parametrize("way", [(2e-4, -1e-4), (2e-4, None), (None, -1e-4)])
 
 
-def led_off_its_mass(way: tuple[float | None, float | None], elements: int = 3) -> Model:
+def led_off_its_mass(way: tuple[float | None, float | None], elements: int = 3) -> fe.Model:
     """Return the pivot with a body whose centre, far from the strips' ends, is led on and back."""
     history = ((0.0, 0.0), (1.03e-4, 1.0), (1.61e-4, 0.5))
     led = {"displacement": way, "history": history}
@@ -193,9 +182,9 @@ def led_off_its_mass(way: tuple[float | None, float | None], elements: int = 3) 
 
 
 @WAYS
-@pytest.mark.parametrize("drive", [None, DrivenRotation(angle=0.1, history=((0.0, 0.0), (1e-4, 1.0)))])
+@pytest.mark.parametrize("drive", [None, fe.DrivenRotation(angle=0.1, history=((0.0, 0.0), (1e-4, 1.0)))])
 def test_a_catch_gives_momentum_to_what_is_led_alone(
-    way: tuple[float | None, float | None], drive: DrivenRotation | None
+    way: tuple[float | None, float | None], drive: fe.DrivenRotation | None
 ) -> None:
     """Requirement: impulses act on led coordinates alone, though a body's mass is off the led point."""
     model = led_off_its_mass(way)
@@ -231,8 +220,8 @@ def test_books_of_a_driven_motion(way: tuple[float | None, float | None]) -> Non
     own off the led point among them."""
 
     def error(step: float = 5e-7) -> float:
-        drive = DrivenRotation(angle=0.02, history=((3.3e-5, 0.0), (7.7e-5, 1.0)), held=(3.3e-5, 1.2e-4))
-        motion = solve_motion(
+        drive = fe.DrivenRotation(angle=0.02, history=((3.3e-5, 0.0), (7.7e-5, 1.0)), held=(3.3e-5, 1.2e-4))
+        motion = fe.solve_motion(
             led_off_its_mass(way), start=0.0, drive=drive, duration=2e-4, step=step, samples=10, check=False
         )
         assert motion.work.max() > 0.1 * motion.kinetic_energy.max() > 0.0
@@ -245,28 +234,21 @@ def relative(value: np.ndarray, exact: np.ndarray) -> float:
     return float(np.abs(value / exact - 1.0).max())
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("element", fe.ELEMENTS)
 def test_both_masses_extrapolate_to_the_same_frequencies(element: str) -> None:
     """At rest and at 60 degrees the frequencies do not depend on how the mass is put on the mesh."""
 
+    def limit(rotation: float, mass: str, elements: tuple[int, ...]) -> Any:
+        how: dict[str, Any] = {"rotation": rotation, "count": 5, "mass": mass, "increments": 5}
+        meshes = [pivot(elements=n, element=element) for n in elements]
+        return extrapolated([fe.natural_frequencies(mesh, **how).frequency for mesh in meshes])
+
     def error(elements: tuple[int, ...] = (20, 40, 80)) -> float:
-        worst = 0.0
-        for rotation in (0.0, np.pi / 3.0):
-            limits = []
-            for mass in ("consistent", "lumped"):
-                values = [
-                    natural_frequencies(
-                        pivot(elements=n, element=element),
-                        rotation=rotation,
-                        count=5,
-                        mass=mass,
-                        increments=5,
-                    ).frequency
-                    for n in elements
-                ]
-                limits.append(extrapolated(values))
-            worst = max(worst, relative(*limits))
-        return worst
+        pairs = [
+            [limit(rotation, mass, elements) for mass in ("consistent", "lumped")]
+            for rotation in (0.0, np.pi / 3.0)
+        ]
+        return max(relative(*pair) for pair in pairs)
 
     hold(f"fe_frequencies_by_mass_{element}", error)
 
@@ -274,8 +256,8 @@ def test_both_masses_extrapolate_to_the_same_frequencies(element: str) -> None:
 def test_holding_the_rotation_interlaces_the_frequencies() -> None:
     """With the rotation held each frequency lies between two of the released pivot."""
     model = pivot(elements=10)
-    free = natural_frequencies(model, rotation=1.0, count=6)
-    held = natural_frequencies(model, rotation=1.0, count=5, held=True)
+    free = fe.natural_frequencies(model, rotation=1.0, count=6)
+    held = fe.natural_frequencies(model, rotation=1.0, count=5, held=True)
     assert np.all(held.frequency >= free.frequency[:5])
     assert np.all(held.frequency <= free.frequency[1:])
     assert np.all(held.body_shapes[:, 2] == 0.0)
@@ -284,12 +266,12 @@ def test_holding_the_rotation_interlaces_the_frequencies() -> None:
 def test_small_meshes_give_all_their_modes() -> None:
     """A mesh too small for the sparse solver is solved densely, and has no more modes than coordinates."""
     model = pivot(elements=2)
-    many = natural_frequencies(model, count=9)
-    few = natural_frequencies(model, count=3)
+    many = fe.natural_frequencies(model, count=9)
+    few = fe.natural_frequencies(model, count=3)
     assert many.frequency.shape == (9,)
     assert few.frequency == pytest.approx(many.frequency[:3], rel=1e-9)
-    assert natural_frequencies(model, count=10).frequency == pytest.approx(many.frequency, rel=1e-9)
-    assert natural_frequencies(model, count=10, accuracy=0.1).frequency.shape == (9,)
+    assert fe.natural_frequencies(model, count=10).frequency == pytest.approx(many.frequency, rel=1e-9)
+    assert fe.natural_frequencies(model, count=10, accuracy=0.1).frequency.shape == (9,)
 
 
 #: A thick section, so that its rotary inertia is felt; stretching is put out of the way at the same rho A.
@@ -326,17 +308,11 @@ def test_section_rotary_inertia() -> None:
     exact = rayleigh_frequency()
 
     def error(effects: tuple[str, ...] = ("section_rotary_inertia",)) -> float:
-        worst = 0.0
+        names, worst = (*fe.DEFAULT_EFFECTS, *effects), 0.0
+        meshes = [free_cantilever(section=STOUT, elements=n, effects=names) for n in (20, 40, 80)]
         for mass in ("consistent", "lumped"):
-            seen = [
-                natural_frequencies(
-                    free_cantilever(section=STOUT, elements=n, effects=(*DEFAULT_EFFECTS, *effects)),
-                    rotation=None,
-                    count=2,
-                    mass=mass,
-                ).frequency[1]
-                for n in (20, 40, 80)
-            ]
+            how: dict[str, Any] = {"rotation": None, "count": 2, "mass": mass}
+            seen = [fe.natural_frequencies(mesh, **how).frequency[1] for mesh in meshes]
             worst = max(worst, abs(float(extrapolated(seen)) / exact - 1.0))
         return float(worst)
 
@@ -350,7 +326,7 @@ def test_body_on_massless_strips() -> None:
 
     def error(area: float = 1e3) -> float:
         model = pivot(effects=MASSLESS, area=area * TABLE_ONE["area"])
-        return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
+        return abs(fe.natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
 
     hold("fe_massless_strips", error)
-    assert len(natural_frequencies(pivot(effects=MASSLESS), count=4).frequency) == 3
+    assert len(fe.natural_frequencies(pivot(effects=MASSLESS), count=4).frequency) == 3

@@ -1,14 +1,11 @@
-"""How long a picture takes to become a state of the pivot, and which part of it how much.
+"""How long a picture takes from the camera to the screen.
 
-    python -m tests.interactive.latency [PICTURES]
-    python -m tests.interactive.latency browser
+    python -m tests.interactive.latency
 
-The first sends one picture of 640 x 480 px at a time over the loopback, each as soon as the state of the last
-has come. The second is the whole way in Chromium: from when its camera, a film, takes a picture until it is
-drawn with its state; and the pictures a second of the demo film in its first pass.
+It is measured in Chromium: from when its camera, a film, takes a picture until it is drawn with its state.
+Pictures a second are those of the demo film in its first pass.
 """
 
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -16,55 +13,13 @@ from pathlib import Path
 import numpy as np
 
 from studies.interactive.tracking.films import demo_film, encoded
-from studies.interactive.web import protocol
 from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
 from tests.interactive.films import PERIOD, film
-from tests.interactive.pages import load
-from tests.interactive.sockets import answer, opened
+from tests.interactive.pages import load, script
 
-#: Parts of the way through the server that it times itself; the rest is the sending's, the loopback's, the
-#: threads' and this client's.
-PARTS = ("track", "solve")
 #: Keeps in the page the milliseconds from each picture's capture until it is drawn with its state.
-WATCH = """
-window.ways = [];
-const captured = new Map();
-window.WebSocket = class extends WebSocket {
-  send(data) {
-    if (data instanceof Uint8Array) {
-      const head = new DataView(data.buffer);
-      captured.set(head.getUint32(4, true), head.getFloat64(12, true));
-    }
-    super.send(data);
-  }
-};
-let last = null;
-const watch = () => {
-  const seq = window.studio?.drawn?.seq;
-  if (seq !== last && captured.has(seq)) window.ways.push(performance.now() - captured.get(seq));
-  last = seq;
-  requestAnimationFrame(watch);
-};
-watch();
-"""
-
-
-def measured(count):
-    """Milliseconds (count, 4) of `count` pictures: the parts, the rest, and the whole."""
-    pictures = [picture.tobytes() for picture in film(frames=PERIOD, samples=3)]
-    states, wholes = [], []
-    with Server(Settings(camera="browser")) as hosted, opened(hosted) as socket:
-        for k in range(count):
-            head = protocol.HEADER.pack(protocol.PICTURE, 1, k, 640, 480, 40.0 * k)
-            begin = time.perf_counter()
-            socket.send(head + pictures[k % PERIOD])
-            while (state := answer(socket))["seq"] != k:
-                pass
-            wholes.append(1e3 * (time.perf_counter() - begin))
-            states.append(state)
-    parts, whole = [[s["track_ms"], s["solve_ms"]] for s in states], np.array(wholes)
-    return np.column_stack((parts, whole - np.sum(parts, axis=1), whole))
+WATCH = script("ways")
 
 
 def browsed(seconds=20.0):
@@ -85,21 +40,13 @@ def browsed(seconds=20.0):
     return np.array(ways), np.array(shown)
 
 
-def main(*words):
-    """Print the median and the 95th percentile of each part, or of the whole way in a browser."""
+def main():
+    """Print the median and the 95th percentile of the whole way, and the rate."""
     warm_up()
-    if words == ("browser",):
-        ways, shown = browsed()
-        rate = (len(shown) - 1) / (shown[-1] - shown[0])
-        print(
-            f"{len(ways)} pictures [ms]: {np.median(ways):.1f}, {np.percentile(ways, 95):.1f}; {rate:.1f} Hz"
-        )
-        return
-    rows = measured(*map(int, words or ("250",)))
-    print(f"{len(rows)} pictures [ms]: median and 95th percentile")
-    for name, column in zip((*PARTS, "rest", "whole"), rows.T, strict=True):
-        print(f"{name:8}{np.median(column):8.2f}{np.percentile(column, 95):8.2f}")
+    ways, shown = browsed()
+    rate = (len(shown) - 1) / (shown[-1] - shown[0])
+    print(f"{len(ways)} pictures [ms]: {np.median(ways):.1f}, {np.percentile(ways, 95):.1f}; {rate:.1f} Hz")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

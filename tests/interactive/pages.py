@@ -4,25 +4,17 @@ import base64
 import json
 import math
 import time
+from pathlib import Path
+
+
+def script(name: str) -> str:
+    """Return a script that looks at the page or changes it, by its name in the folder `scripts`."""
+    path = Path(__file__).with_name("scripts") / f"{name}.js"
+    return path.read_text(encoding="utf-8").rstrip()
+
 
 #: Collects, for two rounds of the film, the burned-in number of each picture that is shown and its state.
-WATCH = """
-window.seen = new Map();
-const small = Object.assign(document.createElement("canvas"), { width: 96, height: 12 }).getContext("2d");
-const watch = () => {
-  if (studio.picture && studio.drawn?.seq === studio.state.seq) {
-    small.drawImage(studio.picture, 0, 0);
-    const data = small.getImageData(0, 6, 96, 1).data;
-    let number = 0;
-    for (let bit = 0; bit < 16; bit++) if (data[4 * (3 + 6 * bit)] > 127) number += 2 ** bit;
-    window.seen.set(studio.state.seq, { number, marker: studio.state.placing.marker, codes:
-    studio.state.warnings.map((w) => w.code),
-      sight: studio.state.sight.state });
-  }
-  requestAnimationFrame(watch);
-};
-watch();
-"""
+WATCH = script("seen")
 
 
 def load(browser, server):
@@ -66,59 +58,15 @@ def turned(browser, degrees):
 
 
 #: Keeps the page busy most of the time, and codes what is kept of a picture late: a busy machine.
-BUSY = """
-const coded = OffscreenCanvas.prototype.convertToBlob;
-OffscreenCanvas.prototype.convertToBlob = async function (...words) {
-  await new Promise((done) => setTimeout(done, 140));
-  return coded.apply(this, words);
-};
-setInterval(() => { const end = performance.now() + 90; while (performance.now() < end); }, 130);
-"""
+BUSY = script("busy")
 #: Counts the sockets that a page opens.
-COUNT_SOCKETS = """
-window.sockets = 0;
-window.WebSocket = class extends WebSocket {
-  constructor(...words) { super(...words); window.sockets += 1; }
-};
-"""
+COUNT_SOCKETS = script("sockets")
 #: Where the body is on the page [px].
-BODY = """
-(() => { const s = studio.state, box = studio.view.canvas.getBoundingClientRect();
-  const [u, v] = studio.view.to(s.pose[0], s.pose[1]);
-  const [width, height] = studio.view.size;
-  return [box.left + u / width * box.width, box.top + v / height * box.height]; })()
-"""
+BODY = script("body")
 #: Turn of the pointer about the ground's clamps' centre from one place on the page to another.
-ANGLE = """
-((x0, y0, x1, y1) => { const s = studio.state.placing.clamps, v = studio.view;
-  const c = [(s[0][0][0] + s[1][0][0]) / 2, (s[0][0][1] + s[0][1][1]) / 2];
-  const [p, q] = [v.from(x0, y0), v.from(x1, y1)].map(([a, b]) => Math.atan2(b - c[1], a - c[0]));
-  return q - p; })
-"""
+ANGLE = script("angle")
 #: The least contrast of a text to its background on the page (WCAG 2), and where.
-CONTRAST = """
-(() => {
-  const linear = (x) => (x / 255 <= 0.03928 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4);
-  const light = (c) => 0.2126 * linear(c[0]) + 0.7152 * linear(c[1]) + 0.0722 * linear(c[2]);
-  const parse = (text) => text.match(/[\\d.]+/g).map(Number);
-  const back = (e) => {
-    for (; e; e = e.parentElement) {
-      const colour = parse(getComputedStyle(e).backgroundColor);
-      if (colour.length < 4 || colour[3] > 0) return colour;
-    }
-    return [255, 255, 255];
-  };
-  const worded = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
-  const shown = [...document.querySelectorAll("body *")].filter((e) => worded(e) && e.offsetParent
-    && !e.closest(":disabled"));
-  const found = shown.map((e) => {
-    const pair = [light(parse(getComputedStyle(e).color)), light(back(e))];
-    const ratio = (Math.max(...pair) + 0.05) / (Math.min(...pair) + 0.05);
-    return [ratio, e.id || e.textContent.trim().slice(0, 20)];
-  });
-  return found.sort((p, q) => p[0] - q[0])[0];
-})()
-"""
+CONTRAST = script("contrast")
 
 
 def drag(browser, places):

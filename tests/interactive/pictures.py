@@ -3,6 +3,7 @@
 python -m tests.interactive.pictures docs/pictures
 """
 
+import json
 import sys
 import time
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 from studies.interactive.tracking.films import demo_film
 from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
-from tests.interactive.pages import picture, typed
+from tests.interactive.pages import picture, script, typed
 
 #: What the numbers stand at, from 1 on.
 PARTS = (
@@ -18,16 +19,7 @@ PARTS = (
     *(".gauge", "#moment", "#energy"),
 )
 #: Puts a number at the left of each part.
-NUMBERED = """
-(parts => parts.forEach((name, k) => {
-  const box = document.querySelector(name).getBoundingClientRect(), mark = document.createElement("b");
-  mark.textContent = k + 1;
-  mark.style.cssText = `position: fixed; left: ${Math.max(0, box.left - 17)}px; top: ${box.top + 2}px;
-    width: 17px; background: #c2371a; color: #fff; font: bold 12px/17px sans-serif; text-align: center;
-    z-index: 9`;
-  document.body.append(mark);
-}))(%s)
-"""
+NUMBERED = script("numbered")
 #: Frame of the demo film that is shown, and quality of a picture with a camera's noise in it.
 FRAME, QUALITY = 68, 70
 #: What is typed where.
@@ -45,7 +37,7 @@ def main(folder: Path) -> None:
                 typed(browser, name, value)
             browser.wait("studio.state.critical !== null")  # a row of the numbers, above the next part
             time.sleep(1.0)
-            browser.ask(NUMBERED % list(PARTS))
+            browser.ask(f"{NUMBERED}({json.dumps(PARTS)})")
             _take(browser, folder / "interactive_hand.png")
         with Browser(width=390, height=844) as browser:
             browser.call("Emulation.setTouchEmulationEnabled", enabled=True)

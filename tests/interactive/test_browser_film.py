@@ -24,10 +24,7 @@ from tests.interactive.pages import BODY, BUSY, WATCH, drag, load
 from tests.interactive.painter import Optics
 from tests.interactive.sockets import opened, told
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH"),
-]
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
 
 FRAMES = 40
 #: Colours of the overlay, which nothing else in a grey picture has.

@@ -10,7 +10,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.web.browser import executable
-from tests.interactive.pages import ANGLE, BODY, CONTRAST, chosen, drag, touch, typed
+from tests.interactive.pages import ANGLE, BODY, CONTRAST, chosen, drag, script, touch, typed
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
 
@@ -227,21 +227,7 @@ def test_parameters_are_typed_in_their_units(page):
 
 #: Drags a slider to and fro, 60 steps a second, for two seconds, and on until fifteen states have come of it;
 #: tells how many have, after 45 s at most.
-SLIDE = """
-(async () => {
-  const slider = document.querySelector("input[aria-label='strip thickness, slider']");
-  const states = new Set(), begin = performance.now(), low = Number(slider.value);
-  const drag = (to) => { slider.value = to; slider.dispatchEvent(new Event("input")); };
-  for (let k = 1; k <= 120 || (states.size < 15 && performance.now() - begin < 45000); k++) {
-    drag(low + 0.24 * (1 - Math.cos(k / 40)));
-    await new Promise((done) => setTimeout(done, 16));
-    states.add(studio.state.values.thickness);
-  }
-  drag(low + 0.48);
-  slider.dispatchEvent(new Event("change"));
-  return states.size;
-})()
-"""
+SLIDE = script("slide")
 
 
 def test_sliders_are_live(page):

@@ -48,20 +48,14 @@ def test_absurd_poses_are_left_out(pose):
 @pytest.mark.parametrize(
     ("event", "message"),
     [
-        (
-            {"do": "pose", "pose": [0, 0, math.nan]},
-            "pose: got \\[0, 0, nan\\], expected three finite numbers",
-        ),
+        ({"do": "pose", "pose": [0, 0, math.nan]}, r"pose: got \[0, 0, nan\], expected three finite numbers"),
         ({"do": "pose", "pose": [0, 0]}, r"pose: got \[0, 0\], expected three finite numbers"),
         ({"do": "seen", "marker": "here"}, 'marker: got the text "here"'),
         ({"do": "seen", "marker": [0, 0, 0], "faults": 3}, "faults: got 3, expected a list of texts"),
         ({"do": "dance"}, "do: got 'dance', expected one of"),
         ({}, "do: got 'None'"),
         ({"do": "tick", "t": math.inf}, "t: got inf"),
-        (
-            {"do": "parameter", "name": "thickness", "value": -1.0},
-            "thickness: got -1000, expected 0.0001 to 1000 mm",
-        ),
+        ({"do": "parameter", "name": "thickness", "value": -1.0}, "thickness: got -1000, expected 0.0001"),
         ({"do": "parameter", "name": "colour", "value": 1.0}, "parameter: got 'colour'"),
         ({"do": "preset", "name": "rubber"}, "preset: got 'rubber', expected one of polymer"),
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),

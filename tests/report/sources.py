@@ -40,9 +40,7 @@ def prose(source: str) -> str:
     source = re.sub(r'#import "[^"]*"|#include "[^"]*"', " ", source)
     source = re.sub(r'(?:fact|see|seetable|plot|listing|supported)\("[^"]*"', " ", source)
     source = re.sub(
-        r'"\w+_\w+"|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"S1"|level: 2|len\(\) > 0',
-        " ",
-        source,
+        r'"\w+_\w+"|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"S1"|level: 2|len\(\) > 0', " ", source
     )
     source = re.sub(r"\b\d+(?:\.\d+)?(?:fr|pt|em|cm)\b|width: \d+%", " ", source)
     source = re.sub(r"depth: \d|leading: |y > 0", " ", source)

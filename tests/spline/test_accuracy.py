@@ -11,15 +11,13 @@ import spline_model
 from spline_model import Status, cross_axis_pivot, solve_many, solve_mechanism, solve_release, solve_statics
 from tests import gates
 from tests.frames import one_strip
+from tests.models import scene
 from tests.spline import scenes
 from tests.table_one import TABLE_ONE
 
 QUARTER = math.pi / 2
 #: Table 1 and a slender design far from symmetric, with rotations [rad]; the study of the estimate has 36.
-DESIGNS = (
-    ({}, QUARTER),
-    ({"crossing_ratio": 0.87, "area": 5e-6, "second_moment_of_area": 1.041e-13}, 1.5),
-)
+DESIGNS = (({}, QUARTER), ({"crossing_ratio": 0.87, "area": 5e-6, "second_moment_of_area": 1.041e-13}, 1.5))
 
 
 def pivot(**settings):
@@ -222,17 +220,16 @@ def test_what_a_path_lacks_has_no_error():
 
 #: Half a swing [s].
 DURATION = 0.006
-HEAVY = ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")
 
 
-def swung(n=6, **settings):
+#: What a release is asked for beside its design.
+ASKED = ("accuracy", "records", "integrator", "step", "start")
+
+
+def swung(n=6, duration=DURATION, **settings):
     """The release of Table 1 from a quarter turn, or with other settings."""
-    options = {"duration": DURATION} | {
-        name: settings.pop(name)
-        for name in ("duration", "accuracy", "records", "integrator", "step", "start")
-        if name in settings
-    }
-    return solve_release(scenes.pivot(control_points=n, **settings), **options)
+    asked = {name: settings.pop(name) for name in ASKED if name in settings}
+    return solve_release(scenes.pivot(control_points=n, **settings), duration=duration, **asked)
 
 
 @cache
@@ -282,24 +279,21 @@ def test_records_are_thinned_not_the_comparison():
     assert np.array_equal(few.rotation, many.rotation[::32])
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {"stretch": "inextensible"},
-        {"effects": ("bending", "stretching", "body_inertia")},
-        {"effects": HEAVY},
-        {
-            "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "strip_damping"),
-            "parameters": {"strip_damping": {"relaxation_time": 1e-6}},
-        },
-    ],
-    ids=["inextensible", "massless strips", "gravity", "damping"],
-)
-def test_other_motions_have_an_estimate_too(settings):
+#: Scenes without explicit steps, with weight or with losses.
+OTHERS = {
+    "inextensible": {"stretch": "inextensible"},
+    "massless strips": {"effects": ("bending", "stretching", "body_inertia")},
+    "gravity": {"effects": (*spline_model.DEFAULT_EFFECTS, "gravity")},
+    "damping": scene(spline_model.DEFAULT_EFFECTS, strip_damping={"relaxation_time": 1e-6}),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_motions_have_an_estimate_too(name):
     """Requirement: scenes without explicit steps, with weight or with losses are solved to an accuracy."""
-    trajectory = swung(accuracy=3e-2, duration=0.003, **settings)
+    trajectory = swung(accuracy=3e-2, duration=0.003, **OTHERS[name])
     assert trajectory.status is Status.CONVERGED
-    finer = swung(8, duration=0.003, step=1.25e-5, **settings)
+    finer = swung(8, duration=0.003, step=1.25e-5, **OTHERS[name])
     gates.check("spline_motion_accuracy_request", true_error(trajectory, finer) / 3e-2)
 
 

@@ -224,11 +224,7 @@ def to(degrees, *, increments=36, method="condensed", **settings):
     """Table 1 driven to a rotation [deg]; a stopped path is returned."""
     pivot = cross_axis_pivot(**(SIX | settings))
     return solve_statics(
-        pivot,
-        rotation=math.radians(degrees),
-        increments=increments,
-        method=method,
-        raise_on_failure=False,
+        pivot, rotation=math.radians(degrees), increments=increments, method=method, raise_on_failure=False
     )
 
 

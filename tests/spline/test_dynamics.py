@@ -7,25 +7,16 @@ from functools import cache, partial
 import numpy as np
 import pytest
 
-from spline_model import (
-    DEFAULT_EFFECTS,
-    DrivenRotation,
-    InvalidParameter,
-    Status,
-    cross_axis_pivot,
-    natural_frequencies,
-    solve_motion,
-    solve_release,
-)
+import spline_model
 from tests import gates
 from tests.spline import scenes
 from tests.spline.scenes import QUARTER, drift, pivot, total
-from tests.table_one import SIDES, SIX, TABLE_ONE
+from tests.table_one import SIDES, SIX, TABLE_ONE, THINNER
 
 
 def released(settings=None, **options):
     """Trajectory of Table 1."""
-    return solve_release(pivot(**settings or {}), **options)
+    return spline_model.solve_release(pivot(**settings or {}), **options)
 
 
 @pytest.mark.parametrize(
@@ -90,53 +81,50 @@ def swing(step, duration=0.004, integrator="leapfrog", **more):
     return released(more, start=QUARTER, records=100, check=False, **how)
 
 
-@cache
-def reference():
-    """Rotation by short energy-consistent steps, 4 ms."""
-    return swing(1e-7, integrator="energy").rotation
-
-
-def test_leapfrog_agrees_with_the_energy_consistent_scheme():
-    """Requirement: both schemes, which share no time step, tend to one trajectory."""
-    gates.hold("spline_leapfrog_agrees", lambda step=1e-6: np.abs(swing(step).rotation - reference()).max())
-
-
 def test_default_step_is_stable_and_a_long_one_says_so():
     """Requirement: the step from the highest frequency works; a step above the limit ends with a reason."""
-    run = solve_release(pivot(), duration=0.002, integrator="leapfrog")
-    assert run.status is Status.CONVERGED
+    run = spline_model.solve_release(pivot(), duration=0.002, integrator="leapfrog")
+    assert run.status is spline_model.Status.CONVERGED
     assert 3e-6 < run.settings["step_s"] < 6e-6
     run = swing(1e-5)
-    assert run.status is Status.NOT_CONVERGED
+    assert run.status is spline_model.Status.NOT_CONVERGED
     assert "take a shorter step" in run.message
 
 
 ROOTS = {"root_compliance": {"root": "monolithic"}}
 
 
-@pytest.mark.parametrize(
-    "more",
-    [
-        {"stretch": "consistent"},
-        {"stretch": "inextensible"},
-        {"segments": 2, "control_points": 5},
-        {"effects": ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")},
-        {"effects": (*DEFAULT_EFFECTS, "root_compliance"), "parameters": ROOTS, **SIDES},
-    ],
-    ids=["consistent", "inextensible", "segments", "gravity", "roots"],
-)
-def test_all_free_scenes_move(more):
-    """Requirement: both schemes tend to one trajectory in every basis and axial form."""
-    steps = {"leapfrog": 1e-6, "energy": 2.5e-7}
-    pair = [swing(step, 2e-4, name, **more).rotation for name, step in steps.items()]
-    gates.check("spline_leapfrog_agrees", np.abs(pair[0] - pair[1]).max())
+FREE = {
+    "mixed": {},
+    "consistent": {"stretch": "consistent"},
+    "inextensible": {"stretch": "inextensible"},
+    "segments": {"segments": 2, "control_points": 5},
+    "gravity": {"effects": (*spline_model.DEFAULT_EFFECTS, "gravity")},
+    "roots": {"effects": (*spline_model.DEFAULT_EFFECTS, "root_compliance"), "parameters": ROOTS, **SIDES},
+}
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_leapfrog_agrees_with_the_energy_consistent_scheme(name):
+    """Requirement: both schemes, which share no time step, tend to one trajectory in every scene and form."""
+    duration, fine = (2e-4, 2.5e-7) if FREE[name] else (4e-3, 1e-7)
+    right = swing(fine, duration, "energy", **FREE[name]).rotation
+
+    def error(step=1e-6):
+        return np.abs(swing(step, duration, **FREE[name]).rotation - right).max()
+
+    gates.check("spline_leapfrog_agrees", error())
+    if name == "mixed":
+        gates.refuse("spline_leapfrog_agrees", error)
 
 
 def energy_of_inextensible(step=5e-6):
     """Largest change of the energy of strips that cannot stretch, over it."""
-    stiff = cross_axis_pivot(**TABLE_ONE, control_points=6, stretch="inextensible")
-    run = solve_release(stiff, duration=0.01, start=1.0, step=step, integrator="leapfrog", check=False)
-    assert run.status is Status.CONVERGED
+    stiff = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=6, stretch="inextensible")
+    run = spline_model.solve_release(
+        stiff, duration=0.01, start=1.0, step=step, integrator="leapfrog", check=False
+    )
+    assert run.status is spline_model.Status.CONVERGED
     return drift(run)
 
 
@@ -164,7 +152,9 @@ def under(history):
 @cache
 def turned(history, step):
     """Rotation at the end, after a moment with a history [rad]."""
-    return solve_motion(coarse(**under(history)), duration=4e-3, step=step, records=1).rotation[-1]
+    return spline_model.solve_motion(coarse(**under(history)), duration=4e-3, step=step, records=1).rotation[
+        -1
+    ]
 
 
 @pytest.mark.parametrize("history", [SUDDEN, GROWING], ids=["sudden", "growing"])
@@ -182,8 +172,8 @@ def test_a_load_in_time_keeps_the_order(history):
 def test_a_drive_off_the_grid_ends_where_it_should():
     """Requirement: a drive that begins, turns and ends between steps is followed, and the books close."""
     corners = ((0.00203, 0.0), (0.00307, 0.2), (0.00411, -0.1))
-    drive = DrivenRotation(body="body", angle=1.0, history=corners, held=(0.00203, 0.00411))
-    run = solve_motion(coarse(), drive=drive, duration=6e-3, step=5e-5)
+    drive = spline_model.DrivenRotation(body="body", angle=1.0, history=corners, held=(0.00203, 0.00411))
+    run = spline_model.solve_motion(coarse(), drive=drive, duration=6e-3, step=5e-5)
     assert not run.message
     inside = (run.time > 0.00204) & (run.time < 0.0041)
     wanted = np.interp(run.time[inside], *zip(*corners, strict=True))
@@ -204,21 +194,21 @@ def test_a_drive_off_the_grid_ends_where_it_should():
 def test_a_motion_goes_on_where_another_ended(settings, how, apart):
     """Requirement: two halves, one after the other, are the whole run, work and the loads' clock included."""
     given = coarse(**settings)
-    whole = solve_release(given, start=1.0, duration=4e-3, check=False, **how)
-    half = solve_release(given, start=1.0, duration=2e-3, check=False, **how)
-    rest = solve_motion(given, after=half, duration=2e-3, **how)
+    whole = spline_model.solve_release(given, start=1.0, duration=4e-3, check=False, **how)
+    half = spline_model.solve_release(given, start=1.0, duration=2e-3, check=False, **how)
+    rest = spline_model.solve_motion(given, after=half, duration=2e-3, **how)
     assert rest.time[0] == pytest.approx(half.time[-1]) and rest.time[-1] == pytest.approx(whole.time[-1])
     assert abs(rest.rotation[-1] - whole.rotation[-1]) < apart
     assert abs(rest.work[-1] - whole.work[-1]) <= 1e-11 * whole.strain_energy[0]
-    with pytest.raises(InvalidParameter, match="after: got 'a motion of another mechanism'"):
-        solve_motion(coarse(control_points=5), after=half, duration=1e-3)
+    with pytest.raises(spline_model.InvalidParameter, match="after: got 'a motion of another mechanism'"):
+        spline_model.solve_motion(coarse(control_points=5), after=half, duration=1e-3)
 
 
 def test_the_monitor_stops_a_run_that_gains_energy(monkeypatch):
     """Requirement: a run whose energy grows is stopped at the last good record, with the reason."""
     # a Newton that hardly solves its steps
     monkeypatch.setattr("spline_model.motion.energy_consistent.TOLERANCE", 1e-3)
-    run = solve_release(coarse(), duration=0.02, step=5e-5)
+    run = spline_model.solve_release(coarse(), duration=0.02, step=5e-5)
     assert run.status.value == "not_converged"
     assert "the energy grows by more than 1e-06 of itself" in run.message
     stored = scenes.total(run)
@@ -227,15 +217,12 @@ def test_the_monitor_stops_a_run_that_gains_energy(monkeypatch):
 
 def test_a_long_step_names_the_mode_that_it_leaves_out():
     """Requirement: a step too long for a mode that has energy names the mode, and the step that it takes."""
-    run = solve_release(coarse(control_points=6), duration=2e-4, step=2e-4)
+    run = spline_model.solve_release(coarse(control_points=6), duration=2e-4, step=2e-4)
     assert "mode 2 (bending, 850 Hz" in run.resolution and "take 5.9e-05 s or less" in run.resolution
 
 
 LIGHT = ("bending", "stretching", "body_inertia")
-SLENDER = TABLE_ONE | {
-    "area": TABLE_ONE["area"] / 10.0,
-    "second_moment_of_area": TABLE_ONE["second_moment_of_area"] / 1000.0,
-}
+SLENDER = TABLE_ONE | THINNER
 LONG_STEP = 1.75e-3
 
 
@@ -251,21 +238,21 @@ def pushed(step):
         "applied_moment": {"moment": 50.0, "history": ((0.0, 0.0), (4e-3, 1.0))},
     }
     made = massless(effects=(*LIGHT, *given), parameters=given)
-    return solve_motion(made, duration=4e-3, step=step, records=1)
+    return spline_model.solve_motion(made, duration=4e-3, step=step, records=1)
 
 
 @cache
 def slender(control_points, step, duration):
     """Release of the ten times more slender pivot from a quarter turn."""
     made = massless(SLENDER, control_points, (*LIGHT, "gravity"))
-    return solve_release(made, start=math.pi / 2, duration=duration, step=step, check=False)
+    return spline_model.solve_release(made, start=math.pi / 2, duration=duration, step=step, check=False)
 
 
 @pytest.mark.parametrize("steps", [200, 800])
 @pytest.mark.parametrize("start", [0.1, 0.5236, 1.0])
 def test_massless_strips_take_short_steps(start, steps):
     """Requirement: massless strips move at short steps as at long ones, and keep energy."""
-    run = solve_release(massless(), start=start, duration=0.013 / 8, step=0.013 / steps)
+    run = spline_model.solve_release(massless(), start=start, duration=0.013 / 8, step=0.013 / steps)
     assert not run.message
     assert drift(run) < 1e-9  # three orders below a step of 1e-6 of the energy
 
@@ -303,17 +290,17 @@ def test_strip_that_snaps_through_is_named():
 def test_strips_with_inertia_go_through_it():
     """Requirement: the motion that stops on massless strips goes on where they have their inertia."""
     made = pivot(SLENDER, effects=(*LIGHT, "gravity", "strip_inertia"))
-    run = solve_release(made, start=math.pi / 2, duration=0.1, step=LONG_STEP / 16, check=False)
+    run = spline_model.solve_release(made, start=math.pi / 2, duration=0.1, step=LONG_STEP / 16, check=False)
     assert not run.message
     assert run.rotation[-1] < 0.0
 
 
 def test_massless_strips_leave_the_body_alone_dynamic():
     """Requirement: without strip inertia three degrees of freedom are dynamic, and energy is kept."""
-    massive = natural_frequencies(cross_axis_pivot(**SIX), count=1).frequency[0]
-    modes = natural_frequencies(massless(), count=10)
+    massive = spline_model.natural_frequencies(spline_model.cross_axis_pivot(**SIX), count=1).frequency[0]
+    modes = spline_model.natural_frequencies(massless(), count=10)
     assert len(modes.frequency) == 3
     assert 0 < modes.frequency[0] / massive - 1 < 0.02  # the strips weigh a third of the body
-    run = solve_release(massless(), start=1.2, duration=0.01)
+    run = spline_model.solve_release(massless(), start=1.2, duration=0.01)
     assert run.settings["integrator"] == "quasi-static strips"
     gates.check("spline_motion_balance", drift(run))

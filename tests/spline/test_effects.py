@@ -3,17 +3,7 @@
 import numpy as np
 import pytest
 
-from spline_model import (
-    DEFAULT_EFFECTS,
-    DrivenRotation,
-    StripDesign,
-    compliant_mechanism,
-    cross_axis_pivot,
-    motion_penalty_stiffness,
-    solve_mechanism,
-    solve_motion,
-    solve_statics,
-)
+import spline_model as spline
 from spline_model.compile import compile_scene
 from spline_model.paper import CURVATURE, STRAIN, evaluate, strips_of
 from tests import gates
@@ -28,16 +18,18 @@ MOVING = ("gravity", "section_rotary_inertia", "strip_damping", "strip_drag", "b
 def static_balance(increments=160):
     """Imbalance of work and energies over 0 to 0.5 rad with every static effect, over the energy."""
     names = ("gravity", "applied_force", "applied_moment", "driven_displacement", "tip_force")
-    solution = solve_mechanism(scene_with(*names), rotation=0.5, increments=increments)
+    solution = spline.solve_mechanism(scene_with(*names), rotation=0.5, increments=increments)
     energy = solution.bending_energy + solution.axial_energy + solution.gravity_energy
     return np.abs(energy - energy[0] - solution.work).max() / energy.max()
 
 
 def root_balance(increments=20):
     """The same of strips and roots that turn, over a quarter turn, over the work."""
-    given = {"effects": (*DEFAULT_EFFECTS, "root_compliance")}
+    given = {"effects": (*spline.DEFAULT_EFFECTS, "root_compliance")}
     given |= {"parameters": {"root_compliance": {"root": "monolithic"}}}
-    path = solve_statics(cross_axis_pivot(**SIX | SIDES | given), rotation=np.pi / 2, increments=increments)
+    path = spline.solve_statics(
+        spline.cross_axis_pivot(**SIX | SIDES | given), rotation=np.pi / 2, increments=increments
+    )
     assert path.inertia.max() == 0
     return np.abs(path.bending_energy + path.axial_energy - path.work).max() / path.work[-1]
 
@@ -47,9 +39,11 @@ def motion_balance(booked=1.0):
 
     booked : the share of the loss that is counted, 1 being right.
     """
-    scene = scene_with(*MOVING, "applied_moment", penalty_stiffness=motion_penalty_stiffness(6))
-    drive = DrivenRotation(body="body", angle=1.0, history=((0.02, 0.0), (0.03, -0.6)), held=(0.02, 0.035))
-    run = solve_motion(scene, start=1.2, duration=0.05, step=5e-5, drive=drive)
+    scene = scene_with(*MOVING, "applied_moment", penalty_stiffness=spline.motion_penalty_stiffness(6))
+    drive = spline.DrivenRotation(
+        body="body", angle=1.0, history=((0.02, 0.0), (0.03, -0.6)), held=(0.02, 0.035)
+    )
+    run = spline.solve_motion(scene, start=1.2, duration=0.05, step=5e-5, drive=drive)
     assert run.status.value == "converged", run.message
     assert run.dissipated[-1] > 10  # J: the damping and the catch do take part
     assert abs(run.work[-1]) > 10
@@ -72,8 +66,8 @@ def test_work_in_motion_is_the_change_of_energy_and_the_loss():
 
 def moving_energy(step, steps, effects, start, **given):
     """Largest relative change of the energy of a pivot over some steps by default."""
-    pivot = cross_axis_pivot(**given, effects=(*DEFAULT_EFFECTS, *effects))
-    return drift(solve_motion(pivot, start=start, duration=steps * step, step=step, check=False))
+    pivot = spline.cross_axis_pivot(**given, effects=(*spline.DEFAULT_EFFECTS, *effects))
+    return drift(spline.solve_motion(pivot, start=start, duration=steps * step, step=step, check=False))
 
 
 def test_pre_strained_strips_keep_their_energy():
@@ -100,9 +94,9 @@ def frame_difference(turned_by=0.7):
             name: {key: tuple(rotation_matrix(turn) @ given[name][key])}
             for name, key in (("gravity", "acceleration"), ("applied_force", "force"))
         }
-        scene = {"effects": DEFAULT_EFFECTS + MOVING, "parameters": given | turned}
-        pivot = cross_axis_pivot(**TABLE_ONE, **scene, orientation=orientation)
-        return solve_motion(pivot, start=1.2, duration=0.02).rotation
+        scene = {"effects": spline.DEFAULT_EFFECTS + MOVING, "parameters": given | turned}
+        pivot = spline.cross_axis_pivot(**TABLE_ONE, **scene, orientation=orientation)
+        return spline.solve_motion(pivot, start=1.2, duration=0.02).rotation
 
     return np.abs(rotation(0.0, 0.0) - rotation(0.7, turned_by)).max()
 
@@ -117,9 +111,11 @@ CURVED = {"area": 5e-5, "second_moment_of_area": 1e-10, "youngs_modulus": 2e9, "
 
 def kinetic_energy(rise, *effects, chord=0.1):
     """Twice the kinetic energy of a strip that turns rigidly with 1 rad/s about its root [kg m^2]."""
-    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(chord, 0.0), rise=rise, tip=None, **CURVED)
+    strip = spline.StripDesign(
+        name="strip", start=(0.0, 0.0), end=(chord, 0.0), rise=rise, tip=None, **CURVED
+    )
     names = ("bending", "stretching", "strip_inertia", *effects)
-    system = compile_scene(compliant_mechanism(strips=[strip], effects=names, control_points=12).scene)
+    system = compile_scene(spline.compliant_mechanism(strips=[strip], effects=names, control_points=12).scene)
     velocity = np.zeros(system.layout.coordinate_count)
     for at in map(system.layout.strip, system.layout.strips):
         points = system.rest[at].reshape(-1, 2)
@@ -145,7 +141,7 @@ FORMS = {
     "published": {"stretch": "consistent", "measure": "published"},
     "segments": {"segments": 2, "control_points": 5, "axial_modes": 2},
     "curling": {
-        "effects": (*DEFAULT_EFFECTS, "clamped_width", "anticlastic"),
+        "effects": (*spline.DEFAULT_EFFECTS, "clamped_width", "anticlastic"),
         "width": 0.04,
         "thickness": 0.001,
         "area": 4e-5,
@@ -158,7 +154,7 @@ class Operator:
     """The assembled operator in dimensionless unknowns around a crooked state."""
 
     def __init__(self, settings):
-        pivot = cross_axis_pivot(**(SIX | settings))
+        pivot = spline.cross_axis_pivot(**(SIX | settings))
         system, generator = compile_scene(pivot.driven(0.8)), np.random.default_rng(7)
         strips = strips_of(system)  # as if they were bent and longer at rest
         strips.along[..., CURVATURE], strips.own[:, STRAIN] = 20.0, 0.01

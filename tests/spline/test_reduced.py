@@ -7,21 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-import spline_model
-from spline_model import (
-    DEFAULT_EFFECTS,
-    BodyDesign,
-    DrivenDisplacement,
-    DrivenRotation,
-    HeldPivot,
-    InvalidParameter,
-    StripDesign,
-    compliant_mechanism,
-    cross_axis_pivot,
-    solve_mechanism,
-    solve_statics,
-    strip_fields,
-)
+import spline_model as spline
 from tests import gates
 from tests.frames import STEEL, one_strip
 from tests.models import scene
@@ -39,7 +25,7 @@ METHODS = ("condensed", "multipliers")
 
 def strip(name, start, end, **more):
     """A strip of spring steel, 10 mm x 0.5 mm."""
-    return StripDesign(name=name, start=start, end=end, **STEEL | {"density": 7800.0}, **more)
+    return spline.StripDesign(name=name, start=start, end=end, **STEEL | {"density": 7800.0}, **more)
 
 
 def elastic(form, **parameters):
@@ -51,9 +37,9 @@ def elastic(form, **parameters):
 def arc(form):
     """A curved, pre-strained strip with a body."""
     given = {"applied_force": {"force": (0.3, 2.0)}, "pre_strain": {"curvature": 2.0, "strain": 1e-5}}
-    body = BodyDesign(name="b", centre=(0.11, 0.01))
+    body = spline.BodyDesign(name="b", centre=(0.11, 0.01))
     bent = strip("a", (0, 0), (0.1, 0), tip="b", rise=0.02)
-    return compliant_mechanism(strips=[bent], bodies=[body], **elastic(form, **given)), {}
+    return spline.compliant_mechanism(strips=[bent], bodies=[body], **elastic(form, **given)), {}
 
 
 def chain(form):
@@ -64,27 +50,27 @@ def chain(form):
         strip("e", (0.22, 0.06), (0.25, 0.0), root="d", tip="ground"),
     ]
     places = {"b": (0.11, 0.0), "d": (0.21, 0.05)}
-    bodies = [BodyDesign(name=name, centre=centre, mass=0.01) for name, centre in places.items()]
+    bodies = [spline.BodyDesign(name=name, centre=centre, mass=0.01) for name, centre in places.items()]
     given = elastic(form, applied_moment={"body": "b", "moment": 0.01}, gravity={})
-    return compliant_mechanism(strips=strips, bodies=bodies, **given), {"rotation": 0.1, "body": "d"}
+    return spline.compliant_mechanism(strips=strips, bodies=bodies, **given), {"rotation": 0.1, "body": "d"}
 
 
 def led_pivot(form):
     """Table 1, its centre led."""
     led = {"displacement": (5e-5, -5e-5)}
-    return cross_axis_pivot(**TABLE_ONE, **elastic(form, driven_displacement=led)), {"rotation": 0.2}
+    return spline.cross_axis_pivot(**TABLE_ONE, **elastic(form, driven_displacement=led)), {"rotation": 0.2}
 
 
 def rooted_pivot(form):
     """Table 1 under a weight, its strips' roots cut from the same block."""
     given = {"gravity": {"acceleration": (300.0, -500.0)}, "root_compliance": {"root": "monolithic"}}
-    return cross_axis_pivot(**TABLE_ONE | SIDES, **elastic(form, **given)), {"rotation": 1.5}
+    return spline.cross_axis_pivot(**TABLE_ONE | SIDES, **elastic(form, **given)), {"rotation": 1.5}
 
 
 def solved(build, form, method):
     """The path of a scene in four increments, by a method."""
     made, how = build(FORMS[form])
-    return solve_mechanism(
+    return spline.solve_mechanism(
         made, increments=4, order="together", method=method, check=False, raise_on_failure=False, **how
     )
 
@@ -111,7 +97,7 @@ def test_elements_find_the_states_of_the_bordered_system(build, form):
 @pytest.mark.parametrize("method", METHODS)
 def test_both_refuse_what_cannot_move(method):
     """Requirement: leading the centre of a pivot with inextensible strips is refused by both."""
-    with pytest.raises(InvalidParameter, match="singular"):
+    with pytest.raises(spline.InvalidParameter, match="singular"):
         solved(led_pivot, "inextensible", method)
 
 
@@ -133,7 +119,9 @@ def apart(one, other, names):
 
 def made(**grid):
     """The pivot of Table 1 with wide strips and effects along them."""
-    return cross_axis_pivot(**WIDE, effects=(*DEFAULT_EFFECTS, *ALONG), parameters=GIVEN, **grid)
+    return spline.cross_axis_pivot(
+        **WIDE, effects=(*spline.DEFAULT_EFFECTS, *ALONG), parameters=GIVEN, **grid
+    )
 
 
 def test_a_pivot_in_segments_answers_as_a_whole_one():
@@ -141,8 +129,10 @@ def test_a_pivot_in_segments_answers_as_a_whole_one():
 
     def error(segments=3, control_points=9):
         pivots = made(segments=segments, control_points=control_points), made(control_points=17)
-        paths = [replace(solve_statics(each, rotation=0.9, increments=3), balanced=True) for each in pivots]
-        fields = [strip_fields(each, path.states) for each, path in zip(pivots, paths, strict=True)]
+        paths = [
+            replace(spline.solve_statics(each, rotation=0.9, increments=3), balanced=True) for each in pivots
+        ]
+        fields = [spline.strip_fields(each, path.states) for each, path in zip(pivots, paths, strict=True)]
         curves = ("arc_length", "rest_shape", "rotation", "stretch", "reactions", "rest_bodies")
         numbers = ("torque", "stiffness", "work", "bending_energy", "own_stiffness")
         return max(apart(*paths, (*PLACES, *numbers)), apart(*fields, curves))
@@ -160,20 +150,15 @@ def test_a_strip_in_tension_is_resolved_by_default():
     pull, turn = 1e4, 0.5
     section = {"area": 12e6, "second_moment_of_area": 1.0, "youngs_modulus": 1.0, "density": 1.0}
     pulled = {"applied_force": {"force": (pull, 0.0)}}
-    strip = one_strip(spline_model, pulled, pulled, end=(1.0, 0.0), section=section)
-    path = solve_mechanism(strip, rotation=turn, increments=4)
+    strip = one_strip(spline, pulled, pulled, end=(1.0, 0.0), section=section)
+    path = spline.solve_mechanism(strip, rotation=turn, increments=4)
     stored = pull * (1.0 - math.cos(turn)) + (pull * math.sin(turn)) ** 2 / (2.0 * 12e6)
     assert path.segments > 1
     assert path.torque[-1] == pytest.approx(math.sqrt(2.0 * stored), rel=1e-4)
 
 
 SOFT = {"area": 5e-6, "second_moment_of_area": 1.041e-13, "youngs_modulus": 1.4e9}
-ROOTS = {
-    "width": 0.01,
-    "thickness": 0.005,
-    "effects": ("bending", "stretching", "root_compliance"),
-    "parameters": {"root_compliance": {"root": "monolithic"}},
-}
+ROOTS = SIDES | scene(("bending", "stretching"), root_compliance={"root": "monolithic"})
 ROBUST = {"penalty_stiffness": 1000.0}
 POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
 """Displacement of the centre from where a free turn would have it [m, m], and rotation [rad]."""
@@ -181,8 +166,8 @@ POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
 
 def held(shift, rotation, **settings):
     """Solver and state of the pivot held away from the centre of a free turn."""
-    pivot = cross_axis_pivot(**(SIX | settings))
-    solver = HeldPivot(pivot)
+    pivot = spline.cross_axis_pivot(**(SIX | settings))
+    solver = spline.HeldPivot(pivot)
     centre = solver.turn(rotation).pose[:2]
     solver.reset()
     return solver, solver.hold(*(centre + shift), rotation)
@@ -193,14 +178,14 @@ def disagreement(pose, increments=8, slide=None, **settings):
     *shift, rotation = pose
     solver, state = held(np.array(shift), rotation, **settings)
     other = {} if slide is None else {"penalty_stiffness": slide}
-    pivot = cross_axis_pivot(**(SIX | settings | other))
+    pivot = spline.cross_axis_pivot(**(SIX | settings | other))
     reference, displacement = pivot, state.pose[:2] - pivot.design.bodies[0].centre
     drives = (
-        DrivenRotation(body="body", angle=rotation),
-        DrivenDisplacement(body="body", displacement=tuple(displacement)),
+        spline.DrivenRotation(body="body", angle=rotation),
+        spline.DrivenDisplacement(body="body", displacement=tuple(displacement)),
     )
     led = replace(reference, scene=reference.scene.with_effects(*drives))
-    path = solve_mechanism(led, increments=increments)
+    path = spline.solve_mechanism(led, increments=increments)
     system, z = path.system, path.states[-1]
     rows = system.layout.multipliers[-2:]
     torque = z[rows[0][0]]
@@ -245,8 +230,8 @@ def test_tangent_is_the_derivative_of_the_force():
 def test_a_pose_in_which_strips_buckle_is_refused():
     """Requirement: pushed straight towards the ground past the Euler load, the strips' straight shape is
     unstable: the last good state is kept, and how far it went is said."""
-    pivot = cross_axis_pivot(**(SIX | SOFT | ROBUST))
-    solver = HeldPivot(pivot)
+    pivot = spline.cross_axis_pivot(**(SIX | SOFT | ROBUST))
+    solver = spline.HeldPivot(pivot)
     known = solver.unknowns
     x, y = pivot.design.bodies[0].centre
     far, near = (solver.hold(x, y + shift, 0.0) for shift in (-0.004, -4e-6))
@@ -259,9 +244,9 @@ def test_a_pose_in_which_strips_buckle_is_refused():
 
 def test_warm_start_needs_few_iterations():
     """Requirement: from one frame to the next, 2 degrees on, at most four Newton iterations a strip."""
-    pivot = cross_axis_pivot(**SIX)
-    path = solve_statics(pivot, rotation=1.0, increments=30)
-    solver = HeldPivot(pivot)
+    pivot = spline.cross_axis_pivot(**SIX)
+    path = spline.solve_statics(pivot, rotation=1.0, increments=30)
+    solver = spline.HeldPivot(pivot)
     work = [
         solver.hold(*centre, angle).iterations
         for angle, centre in zip(path.rotation, path.centre, strict=True)
@@ -271,12 +256,14 @@ def test_warm_start_needs_few_iterations():
 
 def test_mechanisms_of_one_structure_have_their_own_numbers():
     """A pivot solved behind one of other numbers has the answer of a pivot that shares nothing with it."""
-    alone = scene(DEFAULT_EFFECTS, pre_strain={"strain": 0.0})
+    alone = scene(spline.DEFAULT_EFFECTS, pre_strain={"strain": 0.0})
     for change in ({"length": 0.07}, {"inclination": 0.6}, {"area": 1e-6}, {"crossing_ratio": 0.3}):
-        solve_statics(cross_axis_pivot(**SIX), rotation=0.3, increments=2)
+        spline.solve_statics(spline.cross_axis_pivot(**SIX), rotation=0.3, increments=2)
         given = SIX | change
-        mine = solve_statics(cross_axis_pivot(**given), rotation=[0.5, -0.2], increments=2)
-        right = solve_statics(cross_axis_pivot(**given, **alone), rotation=[0.5, -0.2], increments=2)
+        mine = spline.solve_statics(spline.cross_axis_pivot(**given), rotation=[0.5, -0.2], increments=2)
+        right = spline.solve_statics(
+            spline.cross_axis_pivot(**given, **alone), rotation=[0.5, -0.2], increments=2
+        )
         size = np.abs(right.states).max(axis=0) + 1e-9
         assert np.abs((mine.states - right.states) / size).max() < 1e-8
         np.testing.assert_allclose(mine.torque, right.torque, rtol=1e-10, atol=1e-12)

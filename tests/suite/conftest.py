@@ -2,9 +2,8 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -12,8 +11,7 @@ from studies.__main__ import main
 from studies.cases.problem import FOLDER
 
 
-@dataclass(frozen=True)
-class Outcome:
+class Outcome(NamedTuple):
     """What a command left behind."""
 
     code: int
@@ -22,17 +20,11 @@ class Outcome:
 
 
 @pytest.fixture
-def table_1() -> str:
-    """Text of the case file of Table 1."""
-    return (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
-
-
-@pytest.fixture
-def case(tmp_path: Path, table_1: str) -> Callable[..., Path]:
+def case(tmp_path: Path) -> Callable[..., Path]:
     """Write the Table 1 case with texts replaced (old, new) and return its path."""
 
     def write(*replacements: tuple[str, str]) -> Path:
-        text = table_1
+        text = (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
         for old, new in replacements:
             assert old in text, f"{old!r} is not in the Table 1 case"
             text = text.replace(old, new)

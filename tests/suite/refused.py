@@ -4,8 +4,28 @@ from pathlib import Path
 
 FINDS = Path(__file__).with_name("finds")
 
+SIZE = "size cross_axis_pivot --objective centre-shift"
+SIDES = "width_m = 0.01000320153681966\nthickness_m = 0.0049983997439180475"
+MOMENTS = "area_m2 = 5e-5\nsecond_moment_m4 = 1.041e-10\nouter_fibre_m = 0.0025"
+LED = 'effects = ["+driven_displacement"]\n[effects.driven_displacement]\ndisplacement_m = [0, 0]\n[strip]'
+TOGETHER = '[scene]\neffects = ["+gravity"]\n[drive]\norder = "together"'
+TAPER = ("thickness_m =", "thickness_end_m = 0.002\nthickness_m =", "got a taper, expected a constant")
 #: Command with its case -> a text of its file, what is written over it, and what the one line must say.
 CHANGED = {
+    SIZE: [
+        TAPER,
+        (SIDES, MOMENTS, "strip.outer_fibre_m: got 0.0025, expected none"),
+        ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body free to shift"),
+        ("[drive]", TOGETHER, 'drive.order: got "together", expected "loads first"'),
+    ],
+    "advise cross_axis_pivot": [TAPER],
+    "solve round_rod": [
+        ("[mat", "thickness_end_m = 1\n[mat", "thickness_end_m: got it beside area_m2, expected width_m and"),
+        ("[mat", "section_depth_m = 1\n[mat", "section.section_depth_m: got an unknown key"),
+        ("outer_fibre_m = 0.004", "section_depth_m = -1", "section.outer_fibre_m: got -0.5, expected a"),
+        ("outer_fibre_m = 0.004", "outer_fibre_m = 0", "section.outer_fibre_m: got 0, expected a positive"),
+    ],
+    "release round_rod": [("[scene]", "[scene] #", "bodies: got none, expected a body whose motion is")],
     "solve cross_axis_pivot": [
         ("[strip]", "x = 1\n[strip]", "x: got a value outside any section, expected one of [strip]"),
         ("[drive]", "[body.drive]", "body.drive: got an unknown key, expected one of mass_kg"),
@@ -25,7 +45,7 @@ CHANGED = {
     ],
     "converge cross_axis_pivot": [("= 90 ", "= 0 ", "drive.rotation_deg: got 0, expected a rotation")],
     "release four_bar_of_flexures": [
-        ("rotation_deg = 20", "held_s = [0, 1]", "drive.rotation_deg: got none, expected the rotation"),
+        ("rotation_deg = 20", "held_s = [0, 1]", "drive.rotation_deg: got none, expected the rotation")
     ],
     "solve four_bar_of_flexures": [
         ('"gravity"]', '"gravty"]', "scene.effects: got gravty, expected gravity (the nearest name)"),
@@ -132,4 +152,12 @@ WORDS |= {
     "size CASE --objective centre-shift --free x": "--free: got x, expected a number of",
     "size CASE --objective centre-shift --travel-mm 1": "--travel-mm: got it for cross_axis",
     f"{GUIDE} stiffness-variation --free section.width_m": "got stiffness-variation, expected stress for",
+}
+#: Loads that nothing holds.
+FREE = (("hub_with_cable", "hub"), ("free_flight", "A"))
+WORDS |= {
+    f"{verb} {FINDS / name}.toml{more} --model {model}": f"nothing holds body {body}"
+    for name, body in FREE
+    for verb, more in (("solve", ""), ("critical-load", ""), ("compare", " cross_axis_pivot"))
+    for model in ("spline", "fe")
 }

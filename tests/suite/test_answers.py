@@ -11,18 +11,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from studies.answers import metrics
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import centre_shift
-from studies.answers.metrics import (
-    extrapolate,
-    observed_order,
-    passages,
-    quasi_static_frequency,
-    relative_error,
-    richardson,
-    swing_frequency,
-    trajectory_error,
-)
 from studies.answers.motion import signal_modes
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
@@ -38,15 +29,15 @@ def test_trajectory_error_relates_to_the_travel():
     """A path 3 and 4 mm off one that travels 50 mm is off by 10 %."""
     reference = np.array([[0.0, 0.0], [0.02, 0.0], [0.05, 0.0]])
     path = reference + np.array([[0.0, 0.0], [0.003, 0.004], [0.0, 0.005]])
-    assert trajectory_error(path, reference) == pytest.approx([0.0, 0.1, 0.1], rel=1e-12)
-    assert trajectory_error(path[:2], reference) == pytest.approx([0.0, 0.1], rel=1e-12)
+    assert metrics.trajectory_error(path, reference) == pytest.approx([0.0, 0.1, 0.1], rel=1e-12)
+    assert metrics.trajectory_error(path[:2], reference) == pytest.approx([0.0, 0.1], rel=1e-12)
     with pytest.raises(ValueError, match="got no displacement"):
-        trajectory_error(path, reference[:1])
+        metrics.trajectory_error(path, reference[:1])
 
 
 def test_relative_error_is_signed_and_counts_an_unloaded_state_as_none():
     """Errors keep their sign, also against negative references; 0 against 0 is no error."""
-    error = relative_error(np.array([1e-12, 1.1, -1.9]), np.array([1e-17, 1.0, -2.0, 5.0]))
+    error = metrics.relative_error(np.array([1e-12, 1.1, -1.9]), np.array([1e-17, 1.0, -2.0, 5.0]))
     assert error == pytest.approx([0.0, 0.1, 0.05], rel=1e-12)
 
 
@@ -54,16 +45,16 @@ def test_order_and_limit_of_a_known_sequence():
     """f(h) = 1 + 3 h^2 + 5 h^4 is of order 2; elimination finds its limit and what is uncertain."""
     levels = [np.array([1.0 + 3.0 * h**2 + 5.0 * h**4]) for h in (0.1, 0.05, 0.025)]
     errors = [float(level[0]) - 1.0 for level in levels]
-    assert observed_order(errors[-2], errors[-1]) == pytest.approx(2.0, abs=0.01)
-    assert richardson(levels[1], levels[2], order=2.0) == pytest.approx(1.0, abs=1e-5)
-    limit = extrapolate(levels)
+    assert metrics.observed_order(errors[-2], errors[-1]) == pytest.approx(2.0, abs=0.01)
+    assert metrics.richardson(levels[1], levels[2], order=2.0) == pytest.approx(1.0, abs=1e-5)
+    limit = metrics.extrapolate(levels)
     assert limit.value == pytest.approx(1.0, abs=1e-14)
     assert limit.uncertainty == pytest.approx(4.0 * 5.0 * 0.05**4, rel=1e-6)
-    with_four = extrapolate([np.array([1.0 + 3.0 * 0.2**2 + 5.0 * 0.2**4]), *levels])
+    with_four = metrics.extrapolate([np.array([1.0 + 3.0 * 0.2**2 + 5.0 * 0.2**4]), *levels])
     assert with_four.uncertainty == pytest.approx(0.0, abs=1e-14)
-    assert math.isnan(observed_order(0.0, 1.0))
+    assert math.isnan(metrics.observed_order(0.0, 1.0))
     with pytest.raises(ValueError, match="got 2, expected at least 3"):
-        extrapolate(levels[:2])
+        metrics.extrapolate(levels[:2])
 
 
 def test_a_hinge_at_the_crossing_has_no_centre_shift():
@@ -102,7 +93,7 @@ def test_largest_stress_is_that_of_all_strips_and_sections():
     )
 
 
-def test_fingerprint_follows_values_not_layout(case, table_1):
+def test_fingerprint_follows_values_not_layout(case):
     """Comments leave the fingerprint of a problem as it is; a changed value changes it."""
     from studies.cases.design import fingerprint
 
@@ -122,15 +113,12 @@ def implied(cubic, amplitude, states=21):
         return state[0]
 
     quarter.terminal = True  # type: ignore[attr-defined]
-    motion = solve_ivp(
-        lambda _, s: [s[1], -(stiffness * s[0] + cubic * s[0] ** 3) / whole],
-        (0.0, 1.0),
-        [amplitude, 0.0],
-        events=quarter,
-        rtol=1e-11,
-        atol=1e-12,
-    )
-    found = quasi_static_frequency(rotation, centre, energy, mass=mass, moment_of_inertia=inertia)
+
+    def rates(_, state):
+        return [state[1], -(stiffness * state[0] + cubic * state[0] ** 3) / whole]
+
+    motion = solve_ivp(rates, (0.0, 1.0), [amplitude, 0.0], events=quarter, rtol=1e-11, atol=1e-12)
+    found = metrics.quasi_static_frequency(rotation, centre, energy, mass=mass, moment_of_inertia=inertia)
     return abs(found * 4.0 * motion.t_events[0][0] - 1.0)
 
 
@@ -152,23 +140,23 @@ def swing(frequency=42.0, time=TIME):
 
 def test_frequency_of_a_known_swing():
     """Passages of a cosine are found between records, its frequency from them; less than a swing has none."""
-    assert passages(TIME, swing(), 0.0)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-8)
-    assert swing_frequency(TIME, swing()).value == pytest.approx(42.0, rel=1e-8)
-    short = swing_frequency(TIME[:600], swing()[:600])
+    assert metrics.passages(TIME, swing(), 0.0)[:2] == pytest.approx([1.0 / 168.0, 3.0 / 168.0], rel=1e-8)
+    assert metrics.swing_frequency(TIME, swing()).value == pytest.approx(42.0, rel=1e-8)
+    short = metrics.swing_frequency(TIME[:600], swing()[:600])
     assert math.isnan(short.value)
     assert "not a whole swing" in short.reason
 
 
 def test_half_a_swing_is_enough_where_it_turns_as_far_to_both_sides():
     """One swing from its turning point has two passages; a swing cut short has them too, but no frequency."""
-    assert swing_frequency(TIME[:953], swing()[:953]).value == pytest.approx(42.0, rel=1e-8)
-    assert math.isnan(swing_frequency(TIME[:800], 0.2 + swing()[:800]).value)
+    assert metrics.swing_frequency(TIME[:953], swing()[:953]).value == pytest.approx(42.0, rel=1e-8)
+    assert math.isnan(metrics.swing_frequency(TIME[:800], 0.2 + swing()[:800]).value)
 
 
 @pytest.mark.parametrize("rest", [0.3, -2.0])
 def test_frequency_is_of_the_swing_about_its_rest(rest):
     """A swing about another rest than zero has the same frequency, and its rest is found."""
-    found = swing_frequency(TIME, rest + swing())
+    found = metrics.swing_frequency(TIME, rest + swing())
     assert found.value == pytest.approx(42.0, rel=1e-6)
     assert found.rest == pytest.approx(rest, abs=1e-10)
 
@@ -176,7 +164,7 @@ def test_frequency_is_of_the_swing_about_its_rest(rest):
 def rippled(decay, ripple_hertz=511.0):
     """Relative error of the frequency of a swing with a ripple of a quarter of its amplitude."""
     ripple = 0.25 * np.cos(2.0 * np.pi * ripple_hertz * TIME + 1.0)
-    swung = swing_frequency(TIME, np.exp(-decay * TIME) * (swing() + ripple) - 0.1)
+    swung = metrics.swing_frequency(TIME, np.exp(-decay * TIME) * (swing() + ripple) - 0.1)
     return abs(swung.value / 42.0 - 1.0)
 
 
@@ -188,7 +176,7 @@ def test_ripples_are_not_counted(decay):
 
 def test_what_stands_still_has_no_frequency():
     """A constant rotation has no frequency, and the reason says that nothing swings."""
-    assert swing_frequency(TIME, np.full_like(TIME, 0.2)).reason == "nothing swings"
+    assert metrics.swing_frequency(TIME, np.full_like(TIME, 0.2)).reason == "nothing swings"
 
 
 def cantilever(weight):

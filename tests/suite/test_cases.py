@@ -127,11 +127,7 @@ def test_a_strip_has_its_own_section_and_material(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("table", "expected"),
-    [
-        ("acceleration_m_per_s2 = [1.62, 0]", (1.62, 0.0)),
-        ("", (0.0, -9.81)),
-    ],
+    ("table", "expected"), [("acceleration_m_per_s2 = [1.62, 0]", (1.62, 0.0)), ("", (0.0, -9.81))]
 )
 def test_gravity_by_its_parts(table, expected, case):
     """Gravity is given by its two parts, downwards if unsaid."""
@@ -300,56 +296,8 @@ def test_stress_of_a_tapered_strip(model, tmp_path, command):
     assert found["station"] == pytest.approx(x[right.argmax()], abs=0.02)
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ("thickness_end_m = 1e-3", "section.thickness_end_m: got it beside area_m2, expected width_m and"),
-        (f"{FIBRE}\nsection_depth_m = 1", "section.section_depth_m: got an unknown key"),
-        ("section_depth_m = -1", "section.outer_fibre_m: got -0.5, expected a positive number [m]"),
-        ("outer_fibre_m = 0", "section.outer_fibre_m: got 0, expected a positive number [m]"),
-    ],
-)
-def test_sections_that_are_refused(given, said, tmp_path, command):
-    """What makes no section is refused in one line."""
-    (tmp_path / "rod.toml").write_text(rod(given))
-    outcome = command("solve", tmp_path / "rod.toml")
-    assert outcome.code == 2 and said in outcome.err
-
-
-@pytest.mark.parametrize("asked", [("size", "--objective", "centre-shift"), ("advise",)])
-def test_commands_without_tapers_refuse_them(asked, case, command):
-    """Sizing, and the models that `advise` tries on a pivot, refuse a tapered strip in one line."""
-    outcome = command(asked[0], case(("thickness_m =", "thickness_end_m = 0.002\nthickness_m =")), *asked[1:])
-    assert outcome.code == 2
-    assert "strip_1: got a taper, expected a constant section for" in outcome.err
-
-
 def test_a_byte_order_mark_is_no_fault(tmp_path, command):
     """Editors that begin a file with the mark of UTF-8 are understood."""
     path = tmp_path / "rod.toml"
     path.write_text(rod(), encoding="utf-8-sig")
     assert command("solve", path).code == 0
-
-
-@pytest.fixture
-def pulled_strip(tmp_path):
-    """Path of a case of one strip with a small force at its free tip."""
-    path = tmp_path / "strip.toml"
-    path.write_text(one_strip(ROD.replace(f"{-LOAD}", "-0.5")), encoding="utf-8")
-    return path
-
-
-@pytest.mark.parametrize("model", ["fe", "fe-shear"])
-def test_modes_of_strips_alone(model, pulled_strip, command):
-    """The table has the frequencies of a strip; no body moves in its modes."""
-    ended = command("modes", pulled_strip, "--model", model, "--elements", 4, "--count", 2)
-    assert ended.code == 0
-    first = next(line.split() for line in ended.out.splitlines() if line.split()[0] == "1")
-    assert [float(value) for value in first[2:]] == [0.0, 0.0, 0.0]
-
-
-@pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
-def test_release_of_strips_alone_is_refused(model, pulled_strip, refused):
-    """A release reports the swing of a body: without one it is refused in one line."""
-    text = "studies: bodies: got none, expected a body whose motion is computed"
-    assert refused("release", pulled_strip, "--model", model, says=text).startswith(text)

@@ -28,11 +28,7 @@ ACCURACY = 1e-4
 def steep(**changes):
     """The steep pivot, to 75 degrees in six increments."""
     return replace(
-        named_case("spring_steel_pivot"),
-        **STEEP,
-        rotation=math.radians(75.0),
-        increments=6,
-        **changes,
+        named_case("spring_steel_pivot"), **STEEP, rotation=math.radians(75.0), increments=6, **changes
     )
 
 

@@ -171,16 +171,6 @@ def test_the_slow_mode_of_a_stiff_pendulum(model, answered):
     assert found["frequency_Hz"][0] == pytest.approx(exact, rel=2e-5)
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("verb", ["solve", "compare"])
-@pytest.mark.parametrize(("name", "body"), [("hub_with_cable", "hub"), ("free_flight", "A")])
-def test_a_load_that_nothing_holds_is_told_in_a_line(name, body, verb, model, refused):
-    """Requirement: no equilibrium, no traceback: the body and the direction in one line, exit code 2."""
-    beside = ["cross_axis_pivot"] if verb == "compare" else []
-    words = [verb, FINDS / f"{name}.toml", *beside, "--model", model]
-    refused(*words, says=f"nothing holds body {body}")
-
-
 #: Masses that move with the bodies of `free_flight`: the strip, an arc of titanium, as the mean of its ends.
 STRIP = 4430.0 * 0.01 * 0.0005 * 0.1027
 MASSES = {"A": 0.02 + 0.5 * STRIP, "B": 0.05 + 0.5 * STRIP}

@@ -26,7 +26,7 @@ PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
     "verify paper": "takes minutes, and `make verify` runs it",
     "interactive": "serves until it is stopped; tests/interactive runs it",
-    "sweep DESIGNS.toml --out designs --scheduler": "needs a cluster; tests/sweep/test_cluster.py has one",
+    "sweep DESIGNS.toml --out designs --scheduler": "needs a cluster; tests/sweep/test_command.py has one",
     "calibrate": "needs a camera; tests/interactive gives it a film",
     "compile": "removes the kernels that other tests run at the same time; `make setup` runs it",
     "readme": "rewrites README.md; tests/suite/test_results.py has what it writes",

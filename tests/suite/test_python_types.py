@@ -35,6 +35,7 @@ CALLS = {
     "spline statics": (spline_model.solve_statics, SPLINE, {"rotation": 0.1, "increments": 1}),
     "spline mechanism": (spline_model.solve_mechanism, SPLINE, {"rotation": 0.1, "increments": 1}),
     "spline release": (spline_model.solve_release, SPLINE, {"start": 0.1, "duration": 1e-4, "step": 1e-4}),
+    "spline impulses": (spline_model.solve_impulses, SPLINE, {"start": 0.1, "duration": 1e-3, "step": 1e-4}),
     "spline modes": (spline_model.natural_frequencies, SPLINE, {"rotation": 0.1, "count": 1}),
     "fe statics": (fe_reference.solve_statics, ELEMENTS, {"rotation": 0.1, "increments": 1}),
     "fe mechanism": (fe_reference.solve_mechanism, ELEMENTS, {"rotation": 0.1, "increments": 1}),
@@ -105,6 +106,7 @@ CHOICES = {
     "spline statics": ("order", "method", "branch"),
     "spline mechanism": ("order", "control", "branch"),
     "spline release": ("integrator",),
+    "spline impulses": ("form",),
     "fe release": ("integrator",),
     "fe modes": ("mass",),
 }

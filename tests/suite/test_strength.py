@@ -1,8 +1,5 @@
 """The largest stress of an answer and from where on it yields; what an answer warns of."""
 
-import csv
-import io
-import json
 import math
 from dataclasses import replace
 from functools import cache
@@ -10,21 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from studies.answers import validity
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import strength
-from studies.answers.validity import (
-    ANTICLASTIC,
-    CLAMPED_WIDTH,
-    DATA,
-    ROOTS,
-    RULES,
-    Strip,
-    anticlastic_factor,
-    strips_of,
-    told,
-    validity,
-)
 from studies.cases.design import named_design, read_design
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
@@ -100,21 +86,9 @@ def test_stress_of_a_strip_bent_by_a_moment(settings, command):
     assert answer.max_stress[-1] == pytest.approx(0.1 / modulus, rel=1e-5)
 
 
-def test_csv_is_a_row_a_state(case, command, tmp_path):
-    """Requirement: --csv writes what the JSON has by state, in order, with units in the column names."""
-    words = ["solve", case(), "--model", "fe", "--increments", 2]
-    outcome = command(*words, "--csv", tmp_path / "path.csv")
-    assert outcome.out.endswith(f"{tmp_path / 'path.csv'}: the answer as CSV\n")
-    rows = list(csv.DictReader(io.StringIO((tmp_path / "path.csv").read_text(encoding="utf-8"))))
-    assert [row["model"] for row in rows] == ["fe"] * 3
-    answer = json.loads(command(*words, "--json", "-").out)
-    for name in set(rows[0]) - {"model"}:
-        assert [float(row[name]) for row in rows] == pytest.approx(answer[name], rel=1e-9, abs=1e-6)
-
-
 def doubts(design):
     """Return what the data of a design give away before anything is solved."""
-    return tuple(told(DATA, strips_of(design), ()))
+    return tuple(validity.told(validity.DATA, validity.strips_of(design), ()))
 
 
 @cache
@@ -126,19 +100,19 @@ def case_solved(name):
 
 def left_out(answer, *effects):
     """Return the neglected effects of an answer if these effects are named."""
-    return list(told(RULES, strips_of(answer.design, answer), effects))
+    return list(validity.told(validity.RULES, validity.strips_of(answer.design, answer), effects))
 
 
 def test_what_is_left_out_is_said_until_an_effect_takes_it_in():
     """Requirement: plate action, flattening, roots and strain are told, those of named effects not."""
     _, answer = case_solved("polymer_pivot")
-    thin = validity(answer).outside
+    thin = validity.validity(answer).outside
     assert [line.split()[0] for line in thin] == ["b/L", "b^2/(R"]
-    assert left_out(answer, CLAMPED_WIDTH, ANTICLASTIC) == []
+    assert left_out(answer, validity.CLAMPED_WIDTH, validity.ANTICLASTIC) == []
     _, answer = case_solved("cross_axis_pivot")
-    thick = validity(answer).outside
+    thick = validity.validity(answer).outside
     assert [line.split()[0] for line in thick] == ["b/L", "t/L", "strain"]
-    left = left_out(answer, CLAMPED_WIDTH, ROOTS)
+    left = left_out(answer, validity.CLAMPED_WIDTH, validity.ROOTS)
     assert [line.split()[0] for line in left] == ["strain"]
 
 
@@ -147,7 +121,7 @@ def test_the_strip_that_is_worst_speaks():
     given = named_design("parallel_strip_guide")
     short = replace(given.strips[1], start=(0.06, 0.05))
     design = replace(given, strips=(given.strips[0], short))
-    found = validity(answer_static(design, SIX))
+    found = validity.validity(answer_static(design, SIX))
     assert found.width_ratio == pytest.approx(0.01 / 0.05)
     assert found.outside[0].startswith("b/L = 0.2:")
 
@@ -177,24 +151,24 @@ def test_cases_of_the_suite_are_not_doubted():
 
 def flattening_error(poisson_ratio=0.3):
     """Return the largest difference of the factor to the printed ones."""
-    return max(abs(float(anticlastic_factor(each, poisson_ratio)) - known) for each, known, _ in ASHWELL)
+    return max(
+        abs(float(validity.anticlastic_factor(each, poisson_ratio)) - known) for each, known, _ in ASHWELL
+    )
 
 
 def test_flattening_of_a_strip():
     """Requirement: what strong bending adds is Ashwell's, to the printed digits, between both its limits."""
     gates.hold("validity_anticlastic", flattening_error)
-    assert anticlastic_factor(0.0, 0.3) == pytest.approx(1.0, abs=1e-9)
-    assert anticlastic_factor(1e9, 0.3) == pytest.approx(1.0 / 0.91, rel=1e-3)
+    assert validity.anticlastic_factor(0.0, 0.3) == pytest.approx(1.0, abs=1e-9)
+    assert validity.anticlastic_factor(1e9, 0.3) == pytest.approx(1.0 / 0.91, rel=1e-3)
 
 
 def plate_error(**other):
     """Return the largest share by which the estimate of the clamps' plate action is off."""
     errors = []
     for width, nu, constant, linear in RITZ:
-        strip = Strip(
-            length=1.0, width=width, thickness=0.01, youngs_modulus=1e9, density=1e3,
-            poisson_ratio=other.get("poisson_ratio", nu),
-        )  # fmt: skip
+        plate = {"width": width, "poisson_ratio": other.get("poisson_ratio", nu)}
+        strip = validity.Strip(length=1.0, thickness=0.01, youngs_modulus=1e9, density=1e3, **plate)
         pairs = zip(strip.clamped, (constant - 1.0, linear - 1.0), strict=True)
         errors += [abs(found / known - 1.0) for found, known in pairs]
     return max(errors)

@@ -104,10 +104,9 @@ def test_a_finished_sweep_is_not_solved_again(whole, monkeypatch):
     assert (whole / "designs.parquet").stat().st_mtime_ns == before
 
 
-@pytest.mark.parametrize("workers", [1, 3])
-def test_table_does_not_depend_on_the_workers(workers, whole, tmp_path):
-    """Requirement: any number of workers gives the same bytes."""
-    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(workers))
+def test_table_does_not_depend_on_the_workers(whole, tmp_path):
+    """Requirement: three processes give the same bytes as one thread."""
+    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(3))
     assert (tmp_path / "out" / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
 
