@@ -20,8 +20,9 @@ from studies.record.progress import silent, watched
 
 #: Timed rounds of all scenes, one after the other.
 ROUNDS = 3
-#: A scene that took so many times as long as the full one is not timed again.
-SLOW = 3.0
+#: A scene that took so many times as long as the full one is not timed again, but for one below so many
+#: seconds: its first call may have loaded kernels.
+SLOW, QUICK = 3.0, 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +113,7 @@ def _fewer(rows: Sequence[Scene], scene: Scene, run: Run, full: Answer, toleranc
 def _timed(scenes: Sequence[Scene], run: Run) -> list[Scene]:
     """Return the scenes with their median times of path and motion, taken round by round in turn; slow ones
     keep their first time."""
-    slow = SLOW * scenes[0].wall_s
+    slow = max(SLOW * scenes[0].wall_s, QUICK)
     walls: list[list[float]] = [[] if each.wall_s <= slow else [each.wall_s] for each in scenes]
     for _, (each, own) in product(range(ROUNDS), list(zip(scenes, walls, strict=True))):
         if each.wall_s <= slow:
