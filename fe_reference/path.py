@@ -24,7 +24,7 @@ from .arrays import Array
 from .control import LAST, Control, State, equilibrate
 from .errors import InvalidParameter
 from .matrix import GRAIN, Singular
-from .response import CriticalPoint, critical_point, limit_point, respond, tipping, turns_sharply
+from .response import CriticalPoint, critical_point, limit_point, respond, tipping
 
 Progress = Callable[[int, int], None]
 #: What is counted on a path.
@@ -37,9 +37,8 @@ COUNTERS = (
     "factorisations",
 )
 
-#: An increment is halved at least so often before it is given up, and until it is this part of the path; the
-#: last behind a sharp turn.
-HALVINGS, SMALLEST, LEAST = 6, 2.0**-20, 2.0**-30
+#: An increment is halved at least so often before it is given up, and until it is this part of the path.
+HALVINGS, SMALLEST = 6, 2.0**-20
 #: Largest distance of two states that are taken for one, in strip lengths and rad. Another branch is farther
 #: away; closer, the round-off of residuals over a stiffness that vanishes at a critical point would be seen.
 APART = 1e-4
@@ -80,7 +79,6 @@ class Path:
         critical: the critical points that were passed.
         message: why the path stopped ("" if it did not).
         seconds: that following it took [s].
-        smallest: part of the path down to which an increment is halved before it is given up [1].
     """
 
     control: Control
@@ -90,7 +88,6 @@ class Path:
     critical: list[CriticalPoint] = field(default_factory=list)
     message: str = ""
     seconds: float = 0.0
-    smallest: float = SMALLEST
     last: State = field(init=False)
 
     def begin(self, control: Control, y: Array | None = None) -> None:
@@ -165,9 +162,7 @@ class Path:
                 self.critical += tipping(self.control, state, reached, self.counters)
                 return reached
         self.failures.append(outcome.norms)
-        if depth >= HALVINGS and abs(step) <= SMALLEST and turns_sharply(self.control, state):
-            self.smallest = LEAST
-        if depth >= HALVINGS and abs(step) <= self.smallest:
+        if depth >= HALVINGS and abs(step) <= SMALLEST:
             self.last = state
             self.message = (
                 f"{failure} between {self.control.describe(state.parameter)} and "

@@ -269,15 +269,6 @@ def _limits(control: Control, last: State) -> list[float]:
     ]
 
 
-def turns_sharply(control: Control, last: State) -> bool:
-    """Return whether a path that seems to run into a limit point does not: its rate grows by another law.
-
-    So it is at the critical load of a strip with a tiny imperfection.
-    """
-    rest, *earlier = _limits(control, last) or [np.inf]
-    return abs(rest) <= NEAR and any(abs(other - rest) > abs(rest) for other in earlier)
-
-
 def limit_point(control: Control, last: State) -> list[CriticalPoint]:
     """Return the limit point that a path ran into right after its last state, if it did.
 

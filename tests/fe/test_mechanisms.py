@@ -196,24 +196,6 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
     hold("fe_pressed_pivot", error)
 
 
-def test_a_tiny_imperfection_bends_a_column_as_a_small_one_does() -> None:
-    """A load off the axis by 1e-9 or 1e-10 of the length turns the path sharply at the Euler load, without a
-    limit point."""
-
-    def pushed(part: float) -> Any:
-        load = {"force": (-1.2 * np.pi**2 * EI / (2.0 * GUIDE) ** 2, 0.0), "at": (GUIDE, part * GUIDE)}
-        return fe.solve_mechanism(tipped(TIP, applied_force=load))
-
-    found = [pushed(part) for part in (1e-9, 1e-10)]
-    assert all(path.critical_points == () and path.message == "" for path in found)
-
-    def error(small: float = 1e-6) -> float:
-        places = [path.bodies["tip"][-1] for path in (*found, pushed(small))]
-        return float(np.abs(np.divide(places[:2], places[2]) - 1.0).max())
-
-    hold("fe_tiny_imperfection", error)
-
-
 def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
     """It is placed by the eigenvalue that vanishes there, not by the increment that passes it."""
     paths = [
