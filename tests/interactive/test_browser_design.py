@@ -148,6 +148,7 @@ def test_design_that_is_refused_ends_the_calls(hand):
     assert hand.ask("window.sockets") <= 3
     hand.ask("sessionStorage.removeItem('design')")
     hand.call("Page.removeScriptToEvaluateOnNewDocument", **counted)
+    reloaded(hand)  # a page without the counter, whose storage keeps what it is given
 
 
 @pytest.mark.parametrize(("width", "height"), [(1366, 768), (820, 1180), (390, 844)])
