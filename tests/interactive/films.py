@@ -21,10 +21,8 @@ from tests.interactive.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker,
 PERIOD = 40
 
 
-@cache
-def mechanics() -> Mechanics:
-    """The soft pivot."""
-    return Mechanics(PRESETS["polymer"])
+#: The soft pivot.
+mechanics = cache(lambda: Mechanics(PRESETS["polymer"]))
 
 
 @cache

@@ -139,7 +139,7 @@ class Painter:
         optics = self.optics
         picture = self._ground.copy()
         for marker in markers:
-            self._marker(picture, marker)
+            _mix(picture, *_patch(optics, self.samples, marker))
         for finger in fingers:
             self._finger(picture, finger)
         if optics.blur > 0:
@@ -152,9 +152,6 @@ class Painter:
         done = np.clip(np.rint(seen + noise), 0, 255).astype(np.uint8)
         _burn_in(done, number)
         return done
-
-    def _marker(self, picture: Array, marker: Marker) -> None:
-        _mix(picture, *_patch(self.optics, self.samples, marker))
 
     def _finger(self, picture: Array, finger: Finger) -> None:
         angle = np.linspace(0, 2 * math.pi, 33)
