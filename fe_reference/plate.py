@@ -178,10 +178,10 @@ class _Argyris(ElementTriArgyris):
             centred = _Centred(mesh, mapping, mesh.p[:, mesh.t].mean(axis=1))
             super().gbasis(centred, X, 0, tind)  # makes the powers and their coefficients V
             each = np.arange(mesh.t.shape[1]) if tind is None else tind
-            x, coefficients = centred.F(X, each), np.swapaxes(np.asarray(self.V)[each], 1, 2)
+            x, coefficients = centred.F(X, each), np.asarray(self.V)[each, :, :, None]
             # of all functions at once: one by one the powers would be raised again for each
             self._all = {
-                order: coefficients @ np.stack([power(*x) for power in powers], axis=1)
+                order: sum(coefficients[:, k] * power(*x)[:, None] for k, power in enumerate(powers))
                 for order, powers in self._pbasis.items()
             }
         value, *slopes = (self._all[order][:, i] for order in ((), (0,), (1,)))
