@@ -26,15 +26,12 @@ from tests.interactive import films
 from tests.interactive.events import session, turned
 from tests.interactive.painter import SKIN, WHITEST, Marker, Optics
 
-HARD = Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0)
-
-
 LENS = Optics(k1=-0.25, gamma=1.0)
 #: Films whose every frame is found, and the camera where it is known.
 FILMS = {
     "calibrated": (films.film(), Optics().camera),
     "uncalibrated": (films.film(), None),
-    "hard": (films.film(HARD, frames=40), None),
+    "hard": (films.film(Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0), frames=40), None),
     "lens": (films.film(LENS, frames=4, samples=3), LENS.camera),
     "far": (films.film(Optics(distance=0.9), frames=8), None),
     "wide": (films.film(Optics(width=1280, height=720, focal=1000.0), frames=8), None),
@@ -262,9 +259,7 @@ def test_foreign_square_is_not_followed():
 def test_marker_out_of_plane_is_not_shown_as_right():
     """Requirement: a moving marker 10 mm above the plane is refused or doubted, never given without a
     word."""
-    first, second = films.both(5)
-    high = Marker(number=1, pose=second.pose, height=0.010)
-    for event in films.watch(films.film(frames=3, markers=lambda k: [first, high])):
+    for event in films.watch(films.film(frames=3, markers=odd(height=0.010))):
         assert films.names(event) != "found"
 
 
