@@ -183,7 +183,7 @@ class System:
     @property
     def relaxation_time(self) -> float:
         """Of all strips [s]."""
-        return sum(damping.relaxation_time for damping in self.scene.of(StripDamping))
+        return sum((damping.relaxation_time for damping in self.scene.of(StripDamping)), 0.0)
 
     def _add(self, matrix: Array, strip: Strip, block: Array) -> None:
         """Add a matrix of a strip's control points (n, n), the same for x and y."""

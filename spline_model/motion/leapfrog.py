@@ -81,7 +81,7 @@ class _Grid(NamedTuple):
         across = mass[:, :inner, inner:]
         follow, white = inverse @ across, np.linalg.cholesky(inverse).transpose(0, 2, 1)
         at_ends = d1[inner:] - follow.transpose(0, 2, 1) @ d1[:inner]
-        frames = np.stack((model.strips.root, model.strips.tip), axis=1)[:, :, [0, 1, 2, 2]]
+        frames = np.stack((model.strips.root, model.strips.tip), axis=1).take([0, 1, 2, 2], axis=2)
         frames[..., 2], frames[..., 3] = np.cos(frames[..., 2]), np.sin(frames[..., 3])
         tied = np.cumprod(c == 0.0, axis=1).sum(axis=1).astype(np.int64)
         return cls(

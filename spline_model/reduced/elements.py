@@ -162,7 +162,7 @@ class Elements(Followed):
 
     def y(self, z: Array) -> Array:
         """Return the state (Y,) in the order of the elements, of unknowns z (N,) [m, rad, N]."""
-        return z[..., self.place]
+        return z.take(self.place, axis=-1)
 
     def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Fill gradient and tangent at z (N,); return bending and axial energy [J].

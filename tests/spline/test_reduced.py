@@ -1,11 +1,13 @@
 """Strips as elements, in segments and held in a pose: the answers of the paper's bordered system."""
 
 import math
+import sys
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
+from numba.core.registry import CPUDispatcher
 
 import spline_model as spline
 from tests import gates
@@ -267,3 +269,31 @@ def test_mechanisms_of_one_structure_have_their_own_numbers():
         size = np.abs(right.states).max(axis=0) + 1e-9
         assert np.abs((mine.states - right.states) / size).max() < 1e-8
         np.testing.assert_allclose(mine.torque, right.torque, rtol=1e-10, atol=1e-12)
+
+
+def kinds_of_arguments():
+    """How many kinds of arguments each kernel was compiled for, by its name."""
+    modules = [module for name, module in sys.modules.items() if name.startswith("spline_model.")]
+    found = [each for module in modules for each in vars(module).values() if isinstance(each, CPUDispatcher)]
+    return {each.py_func.__qualname__: len(each.signatures) for each in found}
+
+
+DAMPED = scene(spline.DEFAULT_EFFECTS, strip_damping={"relaxation_time": 1e-5})
+SHORT = {"start": 0.3, "duration": 1e-5, "step": 1e-6}
+
+
+@pytest.mark.parametrize(
+    "call, other",
+    [
+        (partial(spline.solve_release, **SHORT), DAMPED),
+        (partial(spline.solve_release, **SHORT, integrator="leapfrog"), {"control_points": 7}),
+        (partial(spline.solve_impulses, **SHORT), DAMPED),
+    ],
+    ids=["damped motion", "leapfrog", "damped impulses"],
+)
+def test_kernels_are_compiled_for_one_kind_of_arguments(call, other):
+    """Requirement: another effect, or other numbers, compile no kernel again."""
+    call(spline.cross_axis_pivot(**TABLE_ONE | {"control_points": 6}))
+    known = kinds_of_arguments()
+    call(spline.cross_axis_pivot(**TABLE_ONE | {"control_points": 6} | other))
+    assert kinds_of_arguments() == known
