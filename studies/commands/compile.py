@@ -29,23 +29,25 @@ from studies.registry import COMMANDS, STUDIES
 CASE = "cross_axis_pivot"
 #: What small calls of `solve` and `release` have in common, and their discretisations.
 PATH = f"solve {CASE} --increments 1 --rotation-deg 5"
+MODES = f"modes {CASE}"
 MOTION = f"release {CASE} --no-check --rotation-deg 5 --duration 1e-5"
 SPLINE, ELEMENTS = "--control-points 4", "--elements 4 --model"
 #: Commands that between them enter every kernel: first what others stand on, then those of each process, the
 #: longest first. What no command enters stands by the name of the function that does.
 CALLS: tuple[tuple[tuple[str, ...], ...], ...] = (
-    ((f"{PATH} --accuracy 1", "many"), (f"{PATH} {ELEMENTS} fe",)),
     (
-        (f"modes {CASE} {ELEMENTS} fe", f"{MOTION} {ELEMENTS} fe"),
-        (f"{MOTION} {SPLINE} --step 1e-8",),
-        ("impulses",),
-        (f"{MOTION} {SPLINE} --step 1e-8 --integrator leapfrog",),
-        (
-            f"{MOTION} {SPLINE} --step 1e-8 --effects=bending,stretching,body_inertia",
-            f"modes {CASE} {SPLINE}",
+        (f"{PATH} --accuracy 1", f"{PATH} {SPLINE} --stretch consistent"),
+        tuple(
+            f"{words} {ELEMENTS} {model}" for model in ("fe", "fe-shear") for words in (PATH, MODES, MOTION)
         ),
-        (f"{PATH} {ELEMENTS} fe-shear", f"modes {CASE} {ELEMENTS} fe-shear", f"{MOTION} {ELEMENTS} fe-shear"),
-        (f"{PATH} {SPLINE} --stretch consistent", f"modes {CASE} {SPLINE} --stretch consistent"),
+    ),
+    (
+        (f"{MOTION} {SPLINE} --step 1e-8",),
+        (f"{MOTION} {SPLINE} --step 1e-8 --integrator leapfrog",),
+        ("impulses",),
+        (f"{MOTION} {SPLINE} --step 1e-8 --effects=bending,stretching,body_inertia",),
+        ("many",),
+        (f"{MODES} {SPLINE}", f"{MODES} {SPLINE} --stretch consistent"),
     ),
 )
 
