@@ -14,6 +14,8 @@ PRETTIER := npx --yes prettier@3.10.1 --print-width 118
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
+# Bytecode is kept where a machine is set not to: each process of the tests would compile all sources again.
+export PYTHONDONTWRITEBYTECODE :=
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -52,10 +54,10 @@ $(EXTRA): $(STAMP) requirements-interactive.lock
 	@touch $@
 
 test: $(STAMP)  ## run the quick tests
-	$(BIN)/python -m pytest -q -n auto --dist loadfile -m "not slow"
+	$(BIN)/python -m pytest -q -n auto --dist worksteal -m "not slow"
 
 test-all: $(STAMP)  ## run all tests
-	$(BIN)/python -m pytest -q -n auto --dist loadfile
+	$(BIN)/python -m pytest -q -n auto --dist worksteal
 
 mutate: $(STAMP)  ## apply mutants to a copy of the code: a named test must detect each (25 minutes)
 	$(BIN)/python -m tests.mutate $(ARGS)

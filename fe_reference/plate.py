@@ -49,6 +49,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementTriArgyris, LinearForm, MeshTri, condense, solve
+from skfem.element import DiscreteField
 from skfem.helpers import dd, ddot, trace
 
 from . import read
@@ -171,9 +172,21 @@ class _Argyris(ElementTriArgyris):
         return super().gdof(F, {**w, "v": w["v"] - centre, "e": w["e"] - centre}, i)
 
     def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:
-        """Return the basis function i at the points."""
-        mesh = mapping.mesh
-        return super().gbasis(_Centred(mesh, mapping, mesh.p[:, mesh.t].mean(axis=1)), X, i, tind)
+        """Return the basis function i at the points, which a basis asks for from the first to the last."""
+        if i == 0:
+            mesh = mapping.mesh
+            centred = _Centred(mesh, mapping, mesh.p[:, mesh.t].mean(axis=1))
+            super().gbasis(centred, X, 0, tind)  # makes the powers and their coefficients V
+            each = np.arange(mesh.t.shape[1]) if tind is None else tind
+            x, coefficients = centred.F(X, each), np.asarray(self.V)[each, :, :, None]
+            # of all functions at once: one by one the powers would be raised again for each
+            self._all = {
+                order: sum(coefficients[:, k] * power(*x)[:, None] for k, power in enumerate(powers))
+                for order, powers in self._pbasis.items()
+            }
+        value, *slopes = (self._all[order][:, i] for order in ((), (0,), (1,)))
+        bends = [[self._all[j, k][:, i] for k in (0, 1)] for j in (0, 1)]
+        return (DiscreteField(value=value, grad=np.stack(slopes), hess=np.array(bends)),)
 
 
 def _energy(u, v, w):  # type: ignore[no-untyped-def]

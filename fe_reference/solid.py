@@ -354,6 +354,7 @@ class _Body:
         """Return state and torque at a rotation, from a guess."""
         strip, coordinates = self.strip, 3 * self.strip.tip
         axes = self.axes[:, None]
+        self._lead(state)  # a guess between states has the faces nearly there; at once, the interior follows
         for _ in range(ITERATIONS):
             turned = np.exp(1j * state[2]) * self.arms / axes
             rates = np.stack(np.broadcast_arrays(1.0 / axes, 1j / axes, 1j * turned), axis=2)
@@ -368,13 +369,19 @@ class _Body:
             change[:2] = -np.linalg.solve(stiffness[:2, :2], force[:2] + stiffness[:2, 2] * change[2])
             torque, before, state = float(force[2] + stiffness[2] @ change), state, state.copy()
             state[:3] = *(state[:2] + change[:2]), rotation
-            place = (complex(*state[:2]) + (np.exp(1j * rotation) - 1.0) * self.arms) / axes
-            for u, each, (_, _, interior) in zip(self.strips(state), place, parts, strict=True):
+            for u, (_, _, interior) in zip(self.strips(state), parts, strict=True):
                 u.reshape(-1)[strip.free] -= interior @ [1.0, *change]
-                u[strip.tip, 0], u[strip.tip, 1] = each.real, each.imag
+            self._lead(state)
             if np.abs(state[3:] - before[3:]).max() < CORRECTION * strip.thickness:
                 return state, torque
         raise ConvergenceError(f"solids at {math.degrees(rotation):.4g} deg: not stable; use smaller steps")
+
+    def _lead(self, state: Array) -> None:
+        """Put the tip faces where the body has them."""
+        turn = np.exp(1j * state[2]) - 1.0
+        place = (complex(*state[:2]) + turn * self.arms) / self.axes[:, None]
+        for u, each in zip(self.strips(state), place, strict=True):
+            u[self.strip.tip, 0], u[self.strip.tip, 1] = each.real, each.imag
 
     def _condensed(self, u: Array, moves: Array, bend: Any) -> tuple[Array, Array, Array]:
         """Return force (3,) and stiffness (3, 3) of a strip on the pose, and the answers of the interior

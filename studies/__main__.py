@@ -4,6 +4,7 @@ import inspect
 import os
 import sys
 from collections.abc import Sequence
+from functools import cache
 
 # One thread, set before numpy is first imported: small matrices gain nothing from more, and timings must not
 # vary.
@@ -68,10 +69,16 @@ def _dispatch(words: list[str]) -> int:
         parser.print_help()
         return 0
     name = parser.parse_args([present(words[0])]).command
-    if forget_stale():
-        print("studies: the source of the kernels has changed: they are compiled again", file=sys.stderr)
+    _forget_kernels()
     command, parser = command_of(name)
     return command.run(parser.parse_args(words[1:]))
+
+
+@cache
+def _forget_kernels() -> None:
+    """Remove kernels of a former source before the first command; what a process has loaded stays so."""
+    if forget_stale():
+        print("studies: the source of the kernels has changed: they are compiled again", file=sys.stderr)
 
 
 def command_of(name: str) -> tuple[Command, Parser]:

@@ -10,13 +10,16 @@ from studies.record.files import forget_stale
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Drop compiled kernels of a former source, once, before the processes that run the tests begin."""
+    """Drop compiled kernels of a former source, once, before the processes that run the tests begin; collect
+    no garbage of imports and of the list of tests."""
+    gc.disable()
     if not hasattr(config, "workerinput"):
         forget_stale()
 
 
 def pytest_collection_finish() -> None:
     """Keep what was imported and collected out of every later collection of garbage."""
+    gc.enable()
     gc.collect()
     gc.freeze()
 

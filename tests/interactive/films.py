@@ -21,12 +21,16 @@ from tests.interactive.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker,
 PERIOD = 40
 
 
+#: The soft pivot.
+mechanics = cache(lambda: Mechanics(PRESETS["polymer"]))
+
+
 @cache
 def truth(k: int) -> tuple[float, float, float]:
     """Pose of marker 1 in marker 0's frame in frame k [m, m, rad]: the soft pivot's own path, 50 degrees to
     either side."""
     angle = math.radians(50) * math.sin(2 * math.pi * k / PERIOD)
-    x, y, turned = Mechanics(PRESETS["polymer"]).marker_at(angle)
+    x, y, turned = mechanics().marker_at(angle)
     return float(x), float(y), float(turned)
 
 

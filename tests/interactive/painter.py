@@ -6,6 +6,7 @@ pixel.
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -138,7 +139,7 @@ class Painter:
         optics = self.optics
         picture = self._ground.copy()
         for marker in markers:
-            self._marker(picture, marker)
+            _mix(picture, *_patch(optics, self.samples, marker))
         for finger in fingers:
             self._finger(picture, finger)
         if optics.blur > 0:
@@ -152,62 +153,74 @@ class Painter:
         _burn_in(done, number)
         return done
 
-    def _marker(self, picture: Array, marker: Marker) -> None:
-        half = 0.5 + MARGIN / BITS
-        late = 0.5 * self.optics.shutter * np.array([[-1.0], [1.0]])
-        ends = marker.placed(half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), late).reshape(-1, 3)
-        where, rows, seen = self._area(self._projected(ends))
-        delay = self.optics.shutter * (rows / self.optics.height - 0.5)
-        plane = np.asarray(np.linalg.inv(self.optics.plane))
-        places = marker.own(project(plane, seen), delay)
-        if marker.height or marker.wedge or marker.curl:  # the points whose pictures are there, by iteration
-            for _ in range(RAISED):
-                at = project(plane, self._projected(marker.placed(places, delay)))
-                places += marker.own(project(plane, seen), delay) - marker.own(at, delay)
-        inside = np.abs(places).max(axis=-1) < half
-        j, i = np.moveaxis(np.floor((places * [1.0, -1.0] + 0.5) * BITS), -1, 0)
-        i, j = (np.clip(each, -1, BITS).astype(int) + 1 for each in (i, j))
-        values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i, j]
-        self._mix(picture, where, values, inside)
-
-    def _projected(self, places: Array) -> Array:
-        """Pictures (..., 2) of places (..., 3) [m], the lens apart."""
-        plane, matrix = self.optics.plane, self.optics.camera.matrix
-        up = matrix @ np.cross(*(np.linalg.inv(matrix) @ plane[:, :2]).T)
-        seen = places @ np.column_stack((plane[:, :2], up)).T + plane[:, 2]
-        return np.asarray(seen[..., :2] / seen[..., 2:])
-
     def _finger(self, picture: Array, finger: Finger) -> None:
         angle = np.linspace(0, 2 * math.pi, 33)
         edge = np.array(finger.centre) + finger.radius * np.column_stack((np.cos(angle), np.sin(angle)))
-        where, _, seen = self._area(project(self.optics.plane, edge))
+        where, _, seen = _area(self.optics, self.samples, project(self.optics.plane, edge))
         gap = project(np.asarray(np.linalg.inv(self.optics.plane)), seen) - finger.centre
         inside = np.hypot(gap[..., 0], gap[..., 1]) < finger.radius
-        self._mix(picture, where, np.full(inside.shape, finger.level), inside)
+        values = np.full(inside.shape, finger.level)
+        _mix(picture, where, *_means(self.optics, self.samples, values, inside))
 
-    def _mix(
-        self, picture: Array, where: tuple[slice, slice], values: Array, inside: NDArray[np.bool_]
-    ) -> None:
-        """Put the mean light of the samples' values over the picture where they are inside."""
-        values = WHITEST * (values / WHITEST) ** self.optics.gamma
-        height, width = picture[where].shape
-        shape = (height, self.samples, width, self.samples)
-        cover = inside.reshape(shape).mean(axis=(1, 3))
-        paint = (values * inside).reshape(shape).mean(axis=(1, 3))
-        picture[where] = picture[where] * (1.0 - cover) + paint
 
-    def _area(self, outline: Array) -> tuple[tuple[slice, slice], Array, Array]:
-        """Pixels around an outline (P, 2) [px], the lens apart, the rows of their samples, and where (..., 2)
-        they would be without the lens."""
-        camera, size = self.optics.camera, (self.optics.width, self.optics.height)
-        seen = camera.distorted(outline) if self.optics.k1 else outline
-        left, top = np.clip(np.floor(seen.min(axis=0)).astype(int) - 1, 0, size)
-        right, bottom = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 2, 0, size)
-        inner = (np.arange(self.samples) + 0.5) / self.samples - 0.5
-        x, y = ((np.arange(*ends)[:, None] + inner).ravel() for ends in ((left, right), (top, bottom)))
-        samples = np.stack(np.meshgrid(x, y), axis=-1)
-        where, rows = (slice(top, bottom), slice(left, right)), samples[..., 1]
-        return where, rows, camera.undistorted(samples) if self.optics.k1 else samples
+@lru_cache(maxsize=256)
+def _patch(optics: Optics, samples: int, marker: Marker) -> tuple[tuple[slice, slice], Array, Array]:
+    """Return the pixels of a marker, which part of each it covers, and its light there.
+
+    Kept, as films of the same optics show the same markers, and all frames the one that stands still.
+    """
+    half = 0.5 + MARGIN / BITS
+    late = 0.5 * optics.shutter * np.array([[-1.0], [1.0]])
+    ends = marker.placed(half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), late).reshape(-1, 3)
+    where, rows, seen = _area(optics, samples, _projected(optics, ends))
+    delay = optics.shutter * (rows / optics.height - 0.5)
+    plane = np.asarray(np.linalg.inv(optics.plane))
+    places = marker.own(project(plane, seen), delay)
+    if marker.height or marker.wedge or marker.curl:  # the points whose pictures are there, by iteration
+        for _ in range(RAISED):
+            at = project(plane, _projected(optics, marker.placed(places, delay)))
+            places += marker.own(project(plane, seen), delay) - marker.own(at, delay)
+    inside = np.abs(places).max(axis=-1) < half
+    j, i = np.moveaxis(np.floor((places * [1.0, -1.0] + 0.5) * BITS), -1, 0)
+    i, j = (np.clip(each, -1, BITS).astype(int) + 1 for each in (i, j))
+    values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i, j]
+    return where, *_means(optics, samples, values, inside)
+
+
+def _projected(optics: Optics, places: Array) -> Array:
+    """Pictures (..., 2) of places (..., 3) [m], the lens apart."""
+    plane, matrix = optics.plane, optics.camera.matrix
+    up = matrix @ np.cross(*(np.linalg.inv(matrix) @ plane[:, :2]).T)
+    seen = places @ np.column_stack((plane[:, :2], up)).T + plane[:, 2]
+    return np.asarray(seen[..., :2] / seen[..., 2:])
+
+
+def _area(optics: Optics, samples: int, outline: Array) -> tuple[tuple[slice, slice], Array, Array]:
+    """Pixels around an outline (P, 2) [px], the lens apart, the rows of their samples, and where (..., 2)
+    they would be without the lens."""
+    camera, size = optics.camera, (optics.width, optics.height)
+    seen = camera.distorted(outline) if optics.k1 else outline
+    left, top = np.clip(np.floor(seen.min(axis=0)).astype(int) - 1, 0, size)
+    right, bottom = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 2, 0, size)
+    inner = (np.arange(samples) + 0.5) / samples - 0.5
+    x, y = ((np.arange(*ends)[:, None] + inner).ravel() for ends in ((left, right), (top, bottom)))
+    places = np.stack(np.meshgrid(x, y), axis=-1)
+    where, rows = (slice(top, bottom), slice(left, right)), places[..., 1]
+    return where, rows, camera.undistorted(places) if optics.k1 else places
+
+
+def _means(optics: Optics, samples: int, values: Array, inside: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Return the part of each pixel whose samples are inside, and the mean light of the values there."""
+    light = WHITEST * (values / WHITEST) ** optics.gamma
+    rows, columns = inside.shape
+    shape = (rows // samples, samples, columns // samples, samples)
+    cover = inside.reshape(shape).mean(axis=(1, 3))
+    return cover, (light * inside).reshape(shape).mean(axis=(1, 3))
+
+
+def _mix(picture: Array, where: tuple[slice, slice], cover: Array, light: Array) -> None:
+    """Put that light over the pixels, as far as it covers them."""
+    picture[where] = picture[where] * (1.0 - cover) + light
 
 
 def _burn_in(picture: Picture, number: int) -> None:

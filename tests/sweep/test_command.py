@@ -130,7 +130,7 @@ def test_memory_does_not_grow_with_the_points(tmp_path):
     for points in (200, 1_600):
         path = tmp_path / f"{points}.toml"
         path.write_text(
-            RANDOM.replace("points = 200", f"points = {points}").replace("chunk = 32", "chunk = 40")
+            RANDOM.replace("points = 104", f"points = {points}").replace("chunk = 32", "chunk = 40")
         )
         # one worker: with several the peak depends on which chunks meet
         words = ["sweep", str(path), "--out", str(tmp_path / str(points)), "--csv", "--workers", "1"]
@@ -148,7 +148,7 @@ def test_memory_does_not_grow_with_the_points(tmp_path):
 
 with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
 
-MANY = RANDOM.replace("points = 200", "points = 800").replace("chunk = 32", "chunk = 20")
+MANY = RANDOM.replace("points = 104", "points = 800").replace("chunk = 32", "chunk = 20")
 
 
 @contextmanager

@@ -38,7 +38,7 @@ def stop_after(points):
 def whole(tmp_path_factory):
     """The folder of the random pivots, solved without interruption, with CSV."""
     folder = tmp_path_factory.mktemp("sweep") / "whole"
-    assert sweep(plan(RANDOM), folder, csv=True, pool=within()) == 200
+    assert sweep(plan(RANDOM), folder, csv=True, pool=within()) == 104
     return folder
 
 
@@ -46,17 +46,17 @@ def test_table_has_a_row_a_point_in_order(whole):
     """Requirement: in the end there is one table of all points, row group by row group, and what made it."""
     assert listed(whole) == ["designs.csv", "designs.parquet", "sweep.json"]
     table = pd.read_parquet(whole / "designs.parquet")
-    assert list(table["point"]) == list(range(200))
+    assert list(table["point"]) == list(range(104))
     assert (table["status"] == "converged").all()
-    assert pq.ParquetFile(whole / "designs.parquet").num_row_groups == 7
+    assert pq.ParquetFile(whole / "designs.parquet").num_row_groups == 4
     manifest = json.loads((whole / "sweep.json").read_text())
     assert list(manifest["columns"]) == list(table.columns)
-    assert manifest["inputs"]["sample"] == {"method": "sobol", "points": 200, "chunk": 32}
+    assert manifest["inputs"]["sample"] == {"method": "sobol", "points": 104, "chunk": 32}
     csv = pd.read_csv(whole / "designs.csv")
     assert csv["torque_Nm"].equals(table["torque_Nm"])
 
 
-@pytest.mark.parametrize("points", [100, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 200))])
+@pytest.mark.parametrize("points", [50, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 104))])
 def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, monkeypatch):
     """Requirement: after an interruption at any time only what is missing is solved, to the same table."""
     out = tmp_path / "out"
@@ -71,8 +71,8 @@ def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, mo
         return solve_chunk(task, start, columns)
 
     monkeypatch.setattr(run, "solve_chunk", counted)
-    assert sweep(plan(RANDOM), out, csv=True, pool=within()) == 200 - kept
-    assert len(solved) == len(set(solved)) == -(-(200 - kept) // 32)
+    assert sweep(plan(RANDOM), out, csv=True, pool=within()) == 104 - kept
+    assert len(solved) == len(set(solved)) == -(-(104 - kept) // 32)
     for name in ("designs.parquet", "designs.csv", "sweep.json"):
         assert (out / name).read_bytes() == (whole / name).read_bytes()
 
@@ -105,15 +105,15 @@ def test_a_finished_sweep_is_not_solved_again(whole, monkeypatch):
 
 
 def test_table_does_not_depend_on_the_workers(whole, tmp_path):
-    """Requirement: three processes give the same bytes as one thread."""
-    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(3))
+    """Requirement: two processes give the same bytes as one thread."""
+    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(2))
     assert (tmp_path / "out" / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (("points = 200", "points = 201"), "another sample.points"),
+        (("points = 104", "points = 105"), "another sample.points"),
         (("rotation_deg = 45", "rotation_deg = 46"), "another case.drive.rotation_deg"),
         (("0.9", "0.8"), "another vary.strip.crossing_ratio.to"),
         (("[vary]", "[settings]\ncontrol_points = 8\n[vary]"), "another settings"),
@@ -168,7 +168,7 @@ def test_what_a_killed_run_left_is_removed(whole, tmp_path):
     out = tmp_path / "out"
     with pytest.raises(Stopped):
         sweep(plan(RANDOM), out, progress=stop_after(60), pool=within())
-    (out / "parts" / ".part-00000006.parquet.x7").write_bytes(b"half")
+    (out / "parts" / ".part-00000003.parquet.x7").write_bytes(b"half")
     (out / ".designs.parquet.q3").write_bytes(b"half")
     sweep(plan(RANDOM), out, pool=within())
     assert listed(out) == ["designs.parquet", "sweep.json"]
@@ -192,7 +192,7 @@ def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
     for path in out.rglob("*.parquet"):
         assert pq.read_table(path).num_rows in (32, 8)
     assert [name for name in listed(out) if "/." in name or name.startswith(".")] == []
-    expected = {1000: 0, 5000: 0, 20000: 7}[room]
+    expected = {1000: 0, 5000: 0, 20000: 4}[room]
     assert len(list(out.rglob("part-*.parquet"))) == expected
     sweep(plan(RANDOM), out, pool=within())
     assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()

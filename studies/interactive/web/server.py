@@ -191,7 +191,7 @@ def _is_private(name: str) -> bool:
 
 async def _close(socket: WebSocket, code: int, reason: str) -> None:
     """Close with a reason as long as the protocol takes it."""
-    with contextlib.suppress(RuntimeError):  # it is closed already
+    with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # it is closed already, or the page has gone
         await socket.close(code, reason.encode()[:120].decode(errors="ignore"))
 
 
