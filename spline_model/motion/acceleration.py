@@ -20,54 +20,39 @@ from spline_model.reduced.assembly import place_of, scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
 from spline_model.strip.element import (
-    CURL,
     FORCE_AT,
     GIVEN,
     GRADIENT,
     ON_POINTS,
-    POINTS,
-    PULL_AT,
     SPEED_AT,
     STRAIN,
     STRETCHING,
     WEIGHT,
 )
 from spline_model.strip.ends import move_points, place_in_frames, rates_of_end, to_ends, turned_frame
-from spline_model.strip.points import (
-    add_mode,
-    add_slopes,
-    curve_at,
-    flatten_at,
-    four,
-    lengths_at,
-    slopes_at,
-)
+from spline_model.strip.points import add_slopes, forces_of_strains, four, given_at, slopes_at, take_strains
 
 
 @part()
-def _push(s, a, grid, shape, strips, local):
+def _push(s, a, shape, strips, local):
     """The gradient of a placed strip, with the axial forces that its strains give."""
-    numbers, lanes, along, weights = strips.numbers[s], local.lanes[s], strips.along[s], shape.rule[WEIGHT]
-    d1, d2, gradient, modes = shape.curve[0], shape.curve[1], local.nodal[s, GRADIENT], grid.modes[s]
-    curve_at(local.nodal[s, POINTS], d1, d2, four(lanes, 0))
-    lengths_at(lanes[0], lanes[1], lanes[GIVEN], weights, numbers[STRAIN], lanes[SPEED_AT], lanes[PULL_AT])
-    force = lanes[FORCE_AT]
-    for p in range(force.size):
-        force[p] = 0.0
-    for k in range(a.size):
-        total = 0.0
-        for p in range(force.size):
-            total += modes[k, p] * lanes[PULL_AT, p]
-        a[k] = total * grid.stiffness[s, k]
-        add_mode(a[k], modes[k], force)
-    if along[0, CURL] > 0.0:
-        flatten_at(s, strips, lanes)
-    given = lanes[SPEED_AT], lanes[GIVEN], lanes[GIVEN + 1], lanes[GIVEN + 2], lanes[GIVEN + 4], force
+    numbers, lanes, gradient = strips.numbers[s], local.lanes[s], local.nodal[s, GRADIENT]
+    take_strains(s, shape, strips, local)
+    forces_of_strains(s, strips, local, a)
+    given_at(s, a, strips, lanes)
+    given = (
+        lanes[SPEED_AT],
+        lanes[GIVEN],
+        lanes[GIVEN + 1],
+        lanes[GIVEN + 2],
+        lanes[GIVEN + 4],
+        lanes[FORCE_AT],
+    )
     rows = four(lanes, 0) + four(lanes, 4) + given
-    slopes_at(strips.measure, numbers[STRAIN], numbers[STRETCHING], weights, *rows)
+    slopes_at(strips.measure, numbers[STRAIN], numbers[STRETCHING], shape.rule[WEIGHT], *rows)
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
-    add_slopes(d1.shape[0], d1, d2, four(lanes, 4), gradient)
+    add_slopes(shape.order.size, shape.curve[0], shape.curve[1], four(lanes, 4), gradient)
 
 
 @part()
@@ -202,7 +187,7 @@ def accelerate(y, w, grid, arrays, masses, room, push):
         turned_frame(root, y, grid.frames[s, 0], room.turns, room.ends[0])
         turned_frame(tip, y, grid.frames[s, 1], room.turns, room.ends[1])
         place_in_frames(s, y[at : at + own], room.ends[0], room.ends[1], strips, local)
-        _push(s, y[at + own : at + own + modes], grid, shape, strips, local)
+        _push(s, y[at + own : at + own + modes], shape, strips, local)
         _set_drift(s, at + own - 2, w, strips, local.map[s], room.drift[s])
         size = _strip_system(s, grid, strips, local, room)
         eliminate(2, size, room.g[s], room.h[s])

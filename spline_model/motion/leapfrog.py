@@ -51,14 +51,11 @@ LARGEST_GAIN = 1e-2
 class _Grid(NamedTuple):
     """Constants of S strips with I inner points.
 
-    frames (S, 2, 4) point and direction of root and tip in the frame of their body or the ground; modes
-    (S, K, G) and stiffness (S, K) of the axial forces; inverse (S, I, I) B_ii^-1; follow (S, 4, I) W^T, ends
-    (S, 4, 4) the end points' mass.
+    frames (S, 2, 4) point and direction of root and tip in the frame of their body or the ground; inverse
+    (S, I, I) B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the end points' mass.
     """
 
     frames: Array
-    modes: Array
-    stiffness: Array
     inverse: Array
     follow: Array
     ends: Array
@@ -74,8 +71,6 @@ class _Grid(NamedTuple):
         frames[..., 2], frames[..., 3] = np.cos(frames[..., 2]), np.sin(frames[..., 3])
         return cls(
             frames=frames,
-            modes=np.ascontiguousarray(model.strips.modes.transpose(0, 2, 1)),
-            stiffness=1.0 / model.strips.compliance,
             inverse=inverse,
             follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
             ends=mass[:, inner:, inner:] - across.transpose(0, 2, 1) @ follow,
