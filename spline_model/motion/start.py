@@ -57,11 +57,6 @@ class Motion:
         return bool((np.diag(self.rigidity) == 0.0).any())
 
     @property
-    def relaxation(self) -> Array:
-        """Relaxation time of the axial modes (M,) [s]."""
-        return np.full(len(self.rigidity), self.system.relaxation_time)
-
-    @property
     def damped(self) -> bool:
         """Whether strips have a relaxation time."""
         return bool(self.system.scene.of(StripDamping))
