@@ -29,20 +29,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import SlideModes
-from spline_model.compile import System, compile_scene
+from spline_model.compile import compile_scene
 from spline_model.design import Design
 from spline_model.discretisation import motion_penalty_stiffness
-from spline_model.effects import DrivenRotation, MixedStretching
+from spline_model.effects import DrivenRotation
 from spline_model.effects.boundary import Driven
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.mechanism import Mechanism
-from spline_model.modes import SLIDE_SHARE, linear_modes
+from spline_model.modes import SLIDE_SHARE, linear_modes, stretching_share
 from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Start, set_in_motion
 from spline_model.newton import Laps
-from spline_model.paper import RIGIDITY, assemble, clamps_of, room, strips_of
 from spline_model.scene import Scene
 from spline_model.solution import MotionEstimate, Status
 from spline_model.statics import static_state
@@ -121,7 +119,7 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
     swings, highest = 0 in missed, int(missed[np.argmax(frequency[missed])])
     name, also = "the swing", ""
     if highest > 0:
-        stretches = _stretching_share(system, start.z, shapes[:, highest], squares[highest]) > 0.5
+        stretches = stretching_share(system, start.z, shapes[:, highest], squares[highest]) > 0.5
         kind = "sliding" if slide[highest] > SLIDE_SHARE else "stretching" if stretches else "bending"
         name = f"mode {highest + 1} ({kind}, {frequency[highest]:.3g} Hz, {share[highest]:.1g} of the energy)"
     if swings and len(missed) > 1:
@@ -143,24 +141,6 @@ def starts_still(start: Start, design: Design) -> bool:
     stiffest = max(strip.axial_rigidity for strip in design.strips) * scales.length / scales.energy
     least = max(STILL_FORCE, ROUND_OFF * np.finfo(float).eps * stiffest)
     return not start.v.any() and float(np.abs(force).max(initial=0.0)) <= least
-
-
-def _stretching_share(system: System, z: Array, shape: Array, square: float) -> float:
-    """Share of the strain energy of a mode, of shape (Q,), that is in stretching."""
-    layout = system.layout
-    count, size = layout.coordinate_count, layout.size
-    gradient, hessian, free, strips = np.zeros(size), np.zeros((size, size)), z.copy(), strips_of(system)
-    free[count:] = 0.0  # the stiffness of stretching alone, no force's
-    limp = strips._replace(along=strips.along.copy())
-    limp.along[..., RIGIDITY] = 0.0
-    assemble(free, limp, clamps_of(system), gradient, hessian, room(strips))
-    strain = shape @ hessian[:count, :count] @ shape
-    for i, effect in enumerate(system.scene.of(MixedStretching)):
-        if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):
-            at = layout.axial_modes(i)
-            pull = hessian[at, :count] @ shape
-            strain += pull @ np.linalg.solve(-hessian[at, at], pull)
-    return float(strain / abs(square)) if square else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

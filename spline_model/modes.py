@@ -24,6 +24,7 @@ from spline_model.sections import STATIONS, curves
 from spline_model.solution import ErrorEstimate
 from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle, static_state
+from spline_model.strip.element import RIGIDITY
 
 Array = NDArray[np.float64]
 
@@ -290,6 +291,20 @@ def _linear_modes(system: System, state: bytes) -> tuple[Array, Array, Array]:
     slid = np.einsum("im,ij,jm->m", shapes, slide, shapes)
     share = np.divide(slid, np.abs(strain), out=np.zeros_like(slid), where=values != 0.0)
     return values, by @ shapes, share
+
+
+def stretching_share(system: System, z: Array, shape: Array, square: float) -> float:
+    """Return the share [1] of the strain energy of a mode that is in stretching.
+
+    z (N,): the state; shape (Q,): of unit modal mass; square: of its circular frequency [1/s^2].
+    """
+    model, unstressed = require_reduced(system), z.copy()
+    unstressed[system.layout.coordinate_count :] = 0.0  # the stiffness of stretching alone, no force's
+    limp = model.strips.along.copy()
+    limp[..., RIGIDITY] = 0.0
+    stiffness, slide, _, by = _linear(replace(model, strips=model.strips._replace(along=limp)), unstressed)
+    moved = np.linalg.lstsq(by, shape, rcond=None)[0]
+    return float(moved @ (stiffness - slide) @ moved / abs(square)) if square else 0.0
 
 
 def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
