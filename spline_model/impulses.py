@@ -27,8 +27,7 @@ from typing import Annotated, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import Clamp, Driven, MixedStretching
-from spline_model.effects.base import Constraint
+from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter
 from spline_model.motion.start import Motion
@@ -221,22 +220,12 @@ def _require_known(motion: Motion) -> None:
             raise InvalidParameter("effects", f"no inertia of {name}", "inertia of every strip and body")
 
 
-def _constraints(motion: Motion) -> list[list[int]]:
-    """Rows of each constraint of the printed form, first of each strip that cannot stretch, then clamp by
-    clamp, and last of each body that supports hold."""
-    layout, scene = motion.system.layout, motion.system.scene
-    found: dict[tuple[str, str], list[int]] = {}
-    for (at, count), effect in zip(layout.modes, scene.of(MixedStretching), strict=True):
-        if effect.axial_compliance == 0:
-            found.setdefault((effect.strip, "axial"), []).extend(range(at, at + count))
-    for (at, count), constraint in zip(layout.multipliers, scene.of(Constraint), strict=True):
-        if isinstance(constraint, Clamp):
-            key: tuple[str, str] = (constraint.strip, constraint.end)
-        else:
-            assert isinstance(constraint, Driven), "there are no others"
-            key = (constraint.body, "support")
-        found.setdefault(key, []).extend(range(at, at + count))
-    return list(found.values())
+def _constraints(motion: Motion) -> list[range]:
+    """Rows of each constraint: of strips that cannot stretch, then of clamps and supports."""
+    layout, stretching = motion.system.layout, motion.system.scene.of(MixedStretching)
+    axial = zip(layout.modes, stretching, strict=True)
+    places = [place for place, effect in axial if effect.axial_compliance == 0]
+    return [range(at, at + count) for at, count in (*places, *layout.multipliers)]
 
 
 @called()

@@ -44,7 +44,7 @@ ROUND_OFF = 1e-14
 """Squared frequency of a rigid motion, over the sum of the terms that cancel in its stiffness."""
 
 
-class RoundOff(InvalidParameter):
+class _RoundOff(InvalidParameter):
     """Matrices whose natural frequencies are decided by round-off."""
 
 
@@ -174,7 +174,7 @@ def _accurate_modes(
             if path is not None and (not path.settled or at_limit(path)):
                 raise
             return None
-        except RoundOff:  # fewer control points may have an answer
+        except _RoundOff:  # fewer control points may have an answer
             return None
 
     def attempt(fewer: Grid, more: Grid) -> tuple[float, Modes] | None:
@@ -244,14 +244,14 @@ def _modes(
 
 
 def _require_possible(values: Array, path: StaticSolution) -> None:
-    """Raise RoundOff if more squared frequencies are negative than the inertia of the state permits.
+    """Raise _RoundOff if more squared frequencies are negative than the inertia of the state permits.
 
     Each drive that a motion releases adds at most one (Cauchy's interlacing theorem).
     """
     unstable, most = int(np.sum(values < 0.0)), int(path.inertia[-1]) + path.reactions.shape[1]
     if unstable > most:
         expected = f"{most} at most by the inertia of the state: round-off decides a frequency [1]"
-        raise RoundOff("unstable modes", unstable, expected)
+        raise _RoundOff("unstable modes", unstable, expected)
 
 
 def linear_modes(system: System, z: Array) -> tuple[Array, Array, Array]:
@@ -263,7 +263,7 @@ def linear_modes(system: System, z: Array) -> tuple[Array, Array, Array]:
 
     Raises
     ------
-    RoundOff
+    _RoundOff
         Frequencies that are decided by round-off.
     """
     if not system.mass.any():
@@ -281,7 +281,7 @@ def _linear_modes(system: System, state: bytes) -> tuple[Array, Array, Array]:
         free = _without_massless(free, stiffness, inertia)
         values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
     except LinAlgError:
-        raise RoundOff(
+        raise _RoundOff(
             "coordinates of the strips",
             len(stiffness),
             "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]",

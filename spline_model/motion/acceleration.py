@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import math
 
-from spline_model.frames import carry, draw, fold_moving, spread
-from spline_model.reduced.arrays import ARMS
-from spline_model.reduced.assembly import place_of, scatter
+from spline_model.frames import draw, fold_moving, spread
+from spline_model.reduced.arrays import ARMS, FORCE
+from spline_model.reduced.assembly import begin, place_of, scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
 from spline_model.strip.element import (
@@ -169,19 +169,16 @@ def accelerate(y, w, grid, arrays, masses, room, push):
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     poses, n, modes = bodies.rest.size, shape.order.size, strips.compliance.shape[1]
     own, tangent, load = 2 * n - 6, room.tangent, room.load
-    arms = arrays.space.vectors[ARMS]
-    carry(y, bodies.frames, arms)
+    arms, pull = arrays.space.vectors[ARMS], arrays.space.vectors[FORCE]
+    begin(y, 0.0, bodies, arrays.space)
     spread(w, bodies.frames, arms)
     for b in range(poses // 3):
         room.turns[b, 0], room.turns[b, 1] = math.cos(y[3 * b + 2]), math.sin(y[3 * b + 2])
     for i in range(poses):
-        load[i] = bodies.weight[i]
+        load[i] = -pull[i]
         for j in range(i, poses):
             tangent[i, j] = 0.0
         tangent[i, i] = masses.inertia[i]
-    for i in range(bodies.springs.shape[0]):
-        for j in range(bodies.springs.shape[0]):
-            load[i] -= bodies.springs[i, j] * (y[j] - bodies.rest[j])
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         turned_frame(root, y, grid.frames[s, 0], room.turns, room.ends[0])
