@@ -133,14 +133,6 @@ def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance
 
     records: filled at the ends of steps whose number ``every`` divides.
     """
-    for i in range(work.held.size):
-        work.held[i] = 0
-    for d in range(active.size):
-        if active[d] == 1:
-            work.held[masses.drive_at[d]] = 1
-    for f in range(masses.frames.place.shape[0]):
-        for k in range(masses.frames.place[f, 2]):
-            work.held[masses.frames.place[f, 0] + k] = 1
     for k in range(begin, end):
         now = time + k * step
         solved = newton(now, step, active, state, arrays, masses, tolerance, work, counters)
@@ -190,6 +182,7 @@ class Stepper(Moves):
         self.model = model = require_reduced(self.motion.system)
         self._begin()
         self.state, self._work = State.of(self._sizes), zeros(Scratch, self._sizes)
+        self._work.held[self._masses.frames.carried] = 1
         self.state.y[:] = from_unknowns(model, start.z)
         self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
         self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
@@ -252,7 +245,11 @@ class Stepper(Moves):
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
+        if not len(self.active):
+            return
         before, self.active = self.active, self.motion.drives_at(time + 0.5 * span)
+        held = self._work.held
+        held[self._masses.drive_at], held[self._masses.drive_at[self.active == 1]] = 0, 1
         if not self.active.any():
             return
         (z,), (v,), _ = self.look()
