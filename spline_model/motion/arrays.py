@@ -132,9 +132,9 @@ class Scratch(NamedTuple):
     and loads; t: the tangent in x', y', x'', y'' at a Gauss point; lost: by the strips, over the step; blocks
     xx, xy, yx, yy of the tangent, a line of them; half: these in control points, ends' rows in coordinates;
     pull, along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the
-    strips condensed; moved: see ``spline_model.motion.step``; load, turned: loads and followers on bodies;
-    system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of frames; follow:
-    values of followers.
+    strips condensed, which tangent solves; moved: see ``spline_model.motion.step``; load, turned: loads and
+    followers on bodies; change: of a strip; held: 1 where a drive or a body holds; arms, ends: of frames;
+    follow: values of followers.
     """
 
     dy: Annotated[Array, "Y"]
@@ -162,10 +162,7 @@ class Scratch(NamedTuple):
     moved: Annotated[Array, "4 Q"]
     turned: Annotated[Array, "Q"]
     load: Annotated[Array, "Q"]
-    system: Annotated[Array, "Q' Q'"]
-    x: Annotated[Array, "Q'"]
     change: Annotated[Array, "E"]
-    free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
     arms: Annotated[Array, "Q"]
     ends: Annotated[Array, "Q"]

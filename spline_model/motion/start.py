@@ -52,9 +52,9 @@ class Motion:
         return rigidity
 
     @property
-    def relaxation(self) -> Array:
-        """Relaxation time of the axial modes (M,) [s]."""
-        return np.full(len(self.rigidity), self.system.relaxation_time)
+    def inextensible(self) -> bool:
+        """Whether a strip cannot stretch."""
+        return bool((np.diag(self.rigidity) == 0.0).any())
 
     @property
     def damped(self) -> bool:

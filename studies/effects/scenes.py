@@ -10,7 +10,7 @@ import numpy as np
 from spline_model.compile import compile_scene
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes
-from spline_model.motion.leapfrog import highest_frequency, stability_limit
+from spline_model.motion.leapfrog import STABILITY_LIMIT, highest_frequency
 from spline_model.motion.start import set_in_motion
 from spline_model.statics import static_state
 from studies.answers.adapters import answer_modes, answer_release, answer_static
@@ -36,6 +36,8 @@ CALLED = {"stretching": "inextensible strips", "strip_inertia": "massless strips
 #: What says how large a scene is, and what its change against the full one is told by.
 SIZES = ("unknowns", "degrees_of_freedom", "highest_frequency_Hz", "explicit_step_s")
 CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
+#: omega h up to which central differences are stable [1].
+CENTRAL_LIMIT = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +116,8 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
 
     Unknowns [1] are coordinates, axial forces and multipliers of a step's equations; degrees of freedom [1]
     are independent coordinates with inertia. The highest frequency [rad/s] is the larger one of the scene at
-    rest and at the start; it gives the largest stable step [s] of the leapfrog.
+    rest and at the start; it gives the largest stable step [s] of the leapfrog, or of central differences
+    for strips that cannot stretch.
 
     Raises:
         BadInput: a setting that the model rejects. spline_model.errors.ConvergenceError: no start is reached.
@@ -128,7 +131,7 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
         start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
         highest = highest_frequency(motion, start)
         modes = linear_modes(system, system.rest)[0]
-    step = stability_limit(motion) / highest
+    step = (CENTRAL_LIMIT if motion.inextensible else STABILITY_LIMIT) / highest
     return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
 
 

@@ -187,6 +187,7 @@ ASKED = [
     (lambda: release(given=UNREACHED, start=math.radians(230)), "not resolved with 8 control points"),
     (lambda: release(given=SPATIAL, start=0.1), "measure: got 'spatial', expected material, or ... leapfrog"),
     (lambda: release("leapfrog", DAMPED, start=0.1), "integrator: got 'leapfrog', expected energy"),
+    (lambda: release("leapfrog", {"stretch": "inextensible"}), "for strips that cannot stretch"),
     (lambda: release(accuracy=1e-2, step=1e-5), "accuracy: got 0.01, expected no step"),
     (lambda: release(accuracy=0.0), "accuracy: got 0.0, expected a finite number > 0 [rad]"),
     (lambda: solve_motion(pivot(**STILL), start=0.5), "strip_inertia, section_rotary_inertia, b"),
