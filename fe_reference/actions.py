@@ -29,7 +29,7 @@ def resist(
         asked: FORCES, MATERIAL or TANGENT, as of `law.elements`; viscous strips resist with MATERIAL alone.
         state: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
         written: arrays that `law.elements` writes; in the first is the force (rows, 3) [N, N m].
-        curvature: second derivatives of the potential by turns (rows, 2) [N m], overwritten.
+        curvature: what the carrying of rows adds to the stiffness of turns (rows,) [N m], overwritten.
 
     Returns:
         Energies of the strips, of springs and of the full weight [J], work of the loads in full since rest
@@ -42,10 +42,10 @@ def resist(
         loss += _viscous_forces(relaxation, given[2], written[2], v, force)
     if len(drag) > 0:
         loss += _drag_forces(drag, v, force)
-    gather(carried, u, force, curvature)
-    gravity = -pull(weights, share, u, force, curvature)
-    rooted, spring, lost = link_forces(links, u, v, force, curvature)
-    work = pull(loads, acts, u, force, curvature)
+    gravity = -pull(weights, share, u, force)
+    rooted, spring, lost = link_forces(links, u, v, force)
+    work = pull(loads, acts, u, force)
+    gather(carried, force, curvature)
     return (bending + rooted, axial, shear), spring, gravity, work, loss + lost
 
 
@@ -132,11 +132,10 @@ def advance(
         time, step: instant and step h [s].
         steps: number of steps.
     """
-    (_, carried, _, _, loads, (relaxation, drag)), force, (u, v) = tables, written[0], state
+    (_, carried, _, _, loads, (relaxation, _)), force, (u, v) = tables, written[0], state
     asked = MATERIAL if relaxation > 0.0 else FORCES
     for n in range(steps):
-        if relaxation > 0.0 or len(drag) > 0:
-            carry_velocity(carried, u, v)
+        carry_velocity(carried, v)
         put_factors(histories, time + n * step, loads[2])
         _, _, _, _, loss = resist(tables, 1.0, 1.0, asked, state, written, curvature)
         power = load_power(loads, v)
@@ -148,6 +147,7 @@ def advance(
             for k in range(3):
                 v[i, k] -= step * compliance[i, k] * force[i, k]
                 u[i, k] += step * v[i, k]
+        carry_velocity(carried, v)  # with the arms of the forces
         totals[0] += 0.5 * step * (power + load_power(loads, v))
         totals[1] += step * loss
         carry(carried, u)

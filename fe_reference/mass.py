@@ -55,7 +55,7 @@ class RigidBodies:
     def diagonal(self, structure: Structure) -> Array:
         """Return the lumped masses (size,) [kg, kg m^2] of a structure reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
-        return structure.gathered(np.vstack([_lumped_nodes(structure), carried, np.zeros(3)]))
+        return structure.gathered(np.vstack([_lumped_nodes(structure), carried]))
 
 
 def lumped_elements(structure: Structure) -> Array:
@@ -97,12 +97,12 @@ def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[St
     centrifugal terms in the equations of motion, which are exact. Bodies whose centre is `led` are reduced
     about that: at a constant velocity of it their moment of inertia about it is all that is left.
     """
-    (attached, rows, offsets, rigid), own = structure.carried, _own_inertia(structure)
-    nodes, centres = _lumped_nodes(structure)[attached], structure.model.centres
-    carried = rows - structure.nodes
-    carrier = np.append(carried, np.arange(len(own)))
-    masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid, own[:, 1])
-    places = np.vstack([offsets + structure.points[carried], centres])
+    (rows, carriers, _, rigid, _), own = structure.carried, _own_inertia(structure)
+    ends, centres = rows < structure.nodes, structure.model.centres
+    attached, carrier = rows[ends], np.append(carriers[ends] - structure.nodes, np.arange(len(own)))
+    nodes, rest = _lumped_nodes(structure)[attached], structure.model.rest.reshape(-1, 2)
+    masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid[ends], own[:, 1])
+    places = np.vstack([rest[attached], centres])
 
     def summed(values: Array) -> Array:
         return np.bincount(carrier, values, len(own)).astype(np.float64)
@@ -136,17 +136,15 @@ def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tup
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     """Return the mass matrix (size, size) [kg, kg m, kg m^2] of strips and bodies at y, "consistent" or
     "lumped"."""
+    many, own = len(structure.elements.length), _own_inertia(structure)
+    blocks = np.zeros((len(structure.pairs), 8, 8))
+    structure.displacement(y)  # for the arms
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
-        masses = np.eye(6)[:, :, None] * lumped_elements(structure)
+        blocks[:many, range(6), range(6)] = lumped_elements(structure).T
     else:
-        masses = _consistent_elements(structure, y)
-    blocks = np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1)
-    whole = structure.reduced_matrix(blocks, structure.displacement(y))
-    for k, (mass, inertia) in enumerate(_own_inertia(structure)):
-        arm = turned(y[structure.turns[k]], *(structure.model.bodies[k].centre - structure.points[k]))
-        about = inertia + mass * (arm[0] ** 2 + arm[1] ** 2)
-        whole.data[structure.pattern.blocks[k]] += _block(mass, arm, about)
-    return whole
+        blocks[:many, :6, :6] = _consistent_elements(structure, y)
+    blocks[len(blocks) - len(own) :, range(3), range(3)] = own[:, [0, 0, 1]]
+    return structure.reduced_matrix(blocks)
 
 
 def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
@@ -156,7 +154,7 @@ def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
 
 
 def _consistent_elements(structure: Structure, y: Array) -> Array:
-    """Return consistent masses (6, 6, E) of linear stretching and, in the frame of the chord, cubic bending;
+    """Return consistent masses (E, 6, 6) of linear stretching and, in the frame of the chord, cubic bending;
     of shear-deformable elements those of linear fields."""
     e, (places, weights) = structure.elements, np.polynomial.legendre.leggauss(4)
     x, l_0, one = 0.5 * (places[:, None] + 1.0), e.length, np.ones_like(e.length)
@@ -176,5 +174,5 @@ def _consistent_elements(structure: Structure, y: Array) -> Array:
     c, s = (chord := e.chord + (nodes[1] - nodes[0]).T) / np.hypot(*chord)
     turn = np.zeros_like(local)
     turn[:3, :3] = turn[3:, 3:] = [[c, s, 0.0 * c], [-s, c, 0.0 * c], [0.0 * c, 0.0 * c, one]]
-    masses: Array = np.einsum("kie,kle,lje->ije", turn, local, turn)
+    masses: Array = np.einsum("kie,kle,lje->eij", turn, local, turn)
     return masses

@@ -14,9 +14,10 @@ from .drives import Span
 from .errors import Norms
 from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
-from .mass import RigidBodies, carried_over
+from .mass import about_mass_centre, carried_over
+from .model import Model
 from .solution import Answer, Status
-from .structure import Structure, structure_of
+from .structure import structure_of
 
 Progress = Callable[[int, int], None]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
@@ -52,21 +53,38 @@ class Instant:
 
 
 class Scheme:
-    """A way to integrate the motion of a structure reduced about the centres of mass of its `bodies`.
+    """A way to integrate the motion of a model, and the samples of the motion.
 
     Attributes:
+        own: the structure of the model. structure, bodies: about the centres of mass of its bodies; about the
+            centres of those that are `led`.
         blow_up: relative gain of energy that stops a motion. mass (size,): lumped. held (size,): what is led;
         inverse (size,): of the mass, zero where there is none and where it is led. off: bodies whose mass is
         off the point that is led.
+        time [s], y (size,), v (size,), energy (5,): of the samples, instants, coordinates and velocities of
+            the own structure, `ENERGIES`.
+        counters: counted steps and iterations by name. history: residual norms of implicit steps.
+        unstable: whether the motion was stopped because its energy blew up.
+        message: why and when the motion stopped early ("" if it did not).
+        books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
+            v.M v over implicit steps.
+        still: whether it starts at rest in equilibrium. stake: largest energy at stake so far [J].
+        floor: energy that is at stake in any motion [J]: what loads put into a rest is held against it.
     """
 
     blow_up = BLOW_UP
 
-    def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
-        self.structure, self.bodies = structure, bodies
-        self.mass, self.coupled = bodies.diagonal(structure), np.zeros((0, 7))
-        self.held = np.zeros(structure.size, dtype=bool)
-        self.off = np.flatnonzero((bodies.centre != structure.points).any(axis=1)).tolist()
+    def __init__(self, model: Model, led: Sequence[int] = ()) -> None:
+        self.own = structure_of(model)
+        self.structure, self.bodies = about_mass_centre(self.own, led)
+        self.mass, self.coupled = self.bodies.diagonal(self.structure), np.zeros((0, 7))
+        self.held = np.zeros(self.structure.size, dtype=bool)
+        self.off = np.flatnonzero((self.bodies.centre != self.structure.points).any(axis=1)).tolist()
+        self.time, self.y, self.v, self.energy = list[float](), list[Array](), list[Array](), list[Array]()
+        self.counters, self.history = Counter[str](), list[tuple[float, ...]]()
+        self.unstable, self.message, self.still = False, "", False
+        self.books, self.content = np.zeros((2, 2))
+        self.stake, self.floor = 0.0, FLOOR * self.structure.moment_unit
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
         """Return an instant with its consistent acceleration.
@@ -111,7 +129,7 @@ class Scheme:
         power = load_power(s.loads.pulls, state[1])
         return Instant(time, y, v, s.gathered(s.written[0]), sum(strain) + spring, gravity, power, loss)
 
-    def go(self, now: Instant, step: float, steps: int, samples: "Samples") -> Instant | None:
+    def go(self, now: Instant, step: float, steps: int) -> Instant | None:
         """Return the instant after steps of equal length [s], or None where the motion stopped; books their
         work."""
         raise NotImplementedError
@@ -143,75 +161,37 @@ class Scheme:
         least = BALANCED * self.structure.scale + self.structure.round_off(tangent)
         return np.asarray(np.abs(at.force) <= least)
 
-    def remarks(self, samples: "Samples", step: float) -> list[str]:
+    def remarks(self, step: float) -> list[str]:
         """Return what the step [s] leaves unresolved: nothing where it is stable."""
         return []
 
-
-@dataclass(kw_only=True, eq=False)
-class Samples:
-    """States of a motion in the coordinates of its model at the sampled instants, the start first.
-
-    Attributes:
-        home: the scheme where no centre of a body is led, in whose coordinates the motion starts.
-        time [s], y (size,), v (size,), energy (5,): instants, coordinates, velocities, `ENERGIES`.
-        counters: counted steps and iterations by name. history: residual norms of implicit steps.
-        unstable: whether the motion was stopped because its energy blew up.
-        message: why and when the motion stopped early ("" if it did not).
-        books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
-            v.M v over implicit steps.
-        still: whether it starts at rest in equilibrium. stake: largest energy at stake so far [J].
-        seconds: that the steps took [s].
-    """
-
-    home: Scheme
-    time: list[float] = field(default_factory=list)
-    y: list[Array] = field(default_factory=list)
-    v: list[Array] = field(default_factory=list)
-    energy: list[Array] = field(default_factory=list)
-    counters: Counter[str] = field(default_factory=Counter)
-    history: list[tuple[float, ...]] = field(default_factory=list)
-    unstable: bool = False
-    message: str = ""
-    books: Array = field(default_factory=lambda: np.zeros(2))
-    content: Array = field(default_factory=lambda: np.zeros(2))
-    still: bool = False
-    stake: float = 0.0
-    seconds: float = 0.0
-
-    @property
-    def floor(self) -> float:
-        """Energy that is at stake in any motion [J]: what loads put into a rest is held against it."""
-        return FLOOR * self.home.structure.moment_unit
-
-    def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
+    def take(self, at: Instant, begun: float) -> bool:
         """Keep an instant if its energy is sound; otherwise note when it was lost.
 
         The gain is measured against the largest energy at stake before this sample. At constant rates drives
         do the work of what is beside the scheme's energy as well.
 
         Args:
-            scheme: scheme in whose coordinates the instant is.
             at: the instant.
             begun: energy beside the scheme's as the span began [J].
 
         Returns:
             Whether it was kept.
         """
-        work, kinetic = float(self.books[0]) + scheme.beside(at) - begun, scheme.kinetic(at.y, at.v)
+        work, kinetic = float(self.books[0]) + self.beside(at) - begun, self.kinetic(at.y, at.v)
         energy = np.array([kinetic, at.strain, at.gravity, work, float(self.books[1])])
         former = self.energy[-1] if self.energy else energy
         self.stake = max(self.stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
         start, now = (float(each @ SIGNS) for each in ((self.energy or [energy])[0], energy))
         at_stake = max(self.stake, abs(work), abs(at.gravity), self.floor)
-        if not np.isfinite(now) or now - start > self.home.blow_up * at_stake:
+        if not np.isfinite(now) or now - start > self.blow_up * at_stake:
             self.unstable = True
             self.message = (
                 f"the energy grew from {start:.6g} J to {now:.6g} J"
                 f" between {self.time[-1]:.6g} s and {at.time:.6g} s"
             )
             return False
-        y, v = carried_over(scheme.structure, at.y, at.v, structure_of(scheme.structure.model))
+        y, v = carried_over(self.structure, at.y, at.v, self.own)
         self.time.append(at.time)
         self.y.append(y)
         self.v.append(v)
@@ -224,49 +204,36 @@ class Samples:
         gain: Array = (balance - balance[0]) / (at_stake or np.inf)
         return gain
 
+    def follow(
+        self, spans: Sequence[Span], y: Array, step: float, chunks: Sequence[int], progress: Progress | None
+    ) -> None:
+        """Take the samples of a motion from rest through its spans.
 
-def course(
-    scheme_of: Callable[[tuple[int, ...]], Scheme],
-    spans: Sequence[Span],
-    y: Array,
-    v: Array,
-    step: float,
-    chunks: Sequence[int],
-    progress: Progress | None = None,
-) -> Samples:
-    """Return the samples of a motion through its spans.
-
-    Args:
-        scheme_of: the scheme for the bodies whose centres are driven; the scheme of no driven body has the
-            coordinates of y, v and the samples.
-        y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] at the start.
-        step: [s]. chunks: steps between samples.
-        progress: called as progress(done, total) after every sample.
-    """
-    scheme = scheme_of(())
-    samples = Samples(home=scheme)
-    for span in spans:
-        before, scheme = scheme.structure, scheme_of(span.led)
-        y, v = carried_over(before, y, v, scheme.structure)
-        caught = span.caught(scheme.structure, scheme.bodies, y, v)
-        gained = scheme.kinetic(y, caught) - scheme.kinetic(y, v)
-        # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
-        samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
-        now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
-        begun = scheme.beside(now)
-        if not samples.time:
-            samples.still = not caught.any() and bool(scheme.unloaded(now)[~scheme.held].all())
-            samples.take(scheme, now, begun)
-        for time, own, many, kept in span.pieces(step, chunks):
-            after = scheme.go(replace(now, time=time), own, many, samples)
-            if after is None or (kept and not samples.take(scheme, after, begun)):
-                return samples
-            now = after
-            if kept and progress is not None:
-                progress(len(samples.time) - 1, len(chunks))
-        samples.books[0] += scheme.beside(now) - begun
-        y, v = now.y, now.v
-    return samples
+        Args:
+            y: coordinates of the own structure (size,) [m, rad] at the start.
+            step: [s]. chunks: steps between samples.
+            progress: called as progress(done, total) after every sample.
+        """
+        y, v = carried_over(self.own, y, np.zeros_like(y), self.structure)
+        for span in spans:
+            caught = span.caught(self.structure, self.bodies, y, v)
+            gained = self.kinetic(y, caught) - self.kinetic(y, v)
+            # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
+            self.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
+            now = self.start(span.begin, y, caught, span.held(self.structure))
+            begun = self.beside(now)
+            if not self.time:
+                self.still = not caught.any() and bool(self.unloaded(now)[~self.held].all())
+                self.take(now, begun)
+            for time, own, many, kept in span.pieces(step, chunks):
+                after = self.go(replace(now, time=time), own, many)
+                if after is None or (kept and not self.take(after, begun)):
+                    return
+                now = after
+                if kept and progress is not None:
+                    progress(len(self.time) - 1, len(chunks))
+            self.books[0] += self.beside(now) - begun
+            y, v = now.y, now.v
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -356,14 +323,15 @@ class Trajectory(Answer):
         }
 
 
-def trajectory(motion: Samples, settings: Mapping[str, float | str], remarks: list[str]) -> Trajectory:
+def trajectory(
+    motion: Scheme, settings: Mapping[str, float | str], seconds: float, remarks: list[str]
+) -> Trajectory:
     """Return the motion of all bodies from samples in the reduced coordinates [m, rad].
 
     Args:
-        settings: of the integrator, by names with units. remarks: on the start.
+        settings: of the integrator, by names with units. seconds: that the steps took. remarks: on the start.
     """
-    model = motion.home.structure.model
-    own, states = structure_of(model), np.array(motion.y)
+    own, states, model = motion.own, np.array(motion.y), motion.own.model
     places, rates = own.body_places(states), own.bodies(np.array(motion.v))
     moved = np.array([own.displacement(y)[: own.nodes, :2] for y in states])
     energies: dict[str, Any] = dict(zip(ENERGIES, np.array(motion.energy).T.copy(), strict=True))
@@ -380,7 +348,7 @@ def trajectory(motion: Samples, settings: Mapping[str, float | str], remarks: li
         counters=dict(motion.counters),
         history=tuple(motion.history),
         settings=settings,
-        seconds={"solve": motion.seconds},
+        seconds={"solve": seconds},
         starts_still=motion.still,
-        resolution="; ".join([*motion.home.remarks(motion, float(settings["step_s"])), *remarks]),
+        resolution="; ".join([*motion.remarks(float(settings["step_s"])), *remarks]),
     )

@@ -15,10 +15,8 @@ from .actions import Tables
 from .arrays import Array, Flags, kernel
 from .control import Control, State, equilibrate
 from .law import Written
-from .loads import between
 from .matrix import Singular, Symmetric
 from .model import Model
-from .places import turned
 from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
@@ -70,10 +68,14 @@ def _stiffness_between(
     exceeds EI. What is `left` to equilibrium (size,) takes the round-off of places out of the forces.
     """
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
-    written = (structure.written[0], at.ends, at.matrices, structure.written[3])
+    written, (_, ends, constants, _) = (
+        (structure.written[0], at.ends, at.matrices, structure.written[3]),
+        structure.links,
+    )
     own = float(_between(structure.tables, u, v, w, rest, written))
-    own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (v[:, 2] * w[:, 2]))
-    return own + between(structure.links, u, v, w) if len(structure.links[1]) else own
+    own += at.tangent.apart(one, other) + float(at.curvature @ (v[:, 2] * w[:, 2]))
+    linked = (np.subtract(*each[ends.T]) for each in (v, w))
+    return own + float(np.sum(constants * np.prod([*linked], axis=0)))
 
 
 @kernel()
@@ -87,22 +89,25 @@ def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
 
 @kernel()
 def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
-    """Return the same of the elements and of the nodes on bodies; of what is written forces are scratch.
+    """Return the same of the elements, and what the forces on carried nodes change with the rest.
+
+    Of what is written forces are scratch.
 
     With v the turn of an element's chord (x, y), its own change c = rate - v (-y, x, 1) strains it, and of
     the rest it is known that the force (X, Y) turns along. With w and d for the other rate it is
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    (_, table, first, _), (attached, carrier, offsets, _) = tables[0], tables[1]
+    (_, table, first, _), (rows, carrier, _, _, arms) = tables[0], tables[1]
     (force, ends, matrices, _), total = written, 0.0
     force[:] = 0.0
     for e in range(len(first)):
         i, h = first[e], matrices[e]
-        j, pull_x, pull_y = i + 1, ends[e, 0], ends[e, 1]
+        j, less_x, less_y = i + 1, 0.0, 0.0
         for k in range(3):
-            pull_x -= h[3, k] * left[i, k] + h[3, 3 + k] * left[j, k]
-            pull_y -= h[4, k] * left[i, k] + h[4, 3 + k] * left[j, k]
+            less_x += h[3, k] * left[i, k] + h[3, 3 + k] * left[j, k]
+            less_y += h[4, k] * left[i, k] + h[4, 3 + k] * left[j, k]
+        pull_x, pull_y = ends[e, 0] - less_x, ends[e, 1] - less_y
         x, y = table[e, 0] + (u[j, 0] - u[i, 0]), table[e, 1] + (u[j, 1] - u[i, 1])
         v, c = _strained(x, y, one, i)
         w, d = _strained(x, y, other, i)
@@ -111,12 +116,11 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
                 total += c[a] * h[2 + a, 2 + b] * d[b]
         total += w * (pull_x * c[2] - pull_y * c[1]) + v * (pull_x * d[2] - pull_y * d[1])
         total += v * w * (pull_x * x + pull_y * y)
-        force[i, 0], force[i, 1] = force[i, 0] - pull_x, force[i, 1] - pull_y
-        force[j, 0], force[j, 1] = force[j, 0] + pull_x, force[j, 1] + pull_y
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        x, y = turned(u[b, 2], offsets[k, 0], offsets[k, 1])
-        total -= one[b, 2] * other[b, 2] * (x * force[i, 0] + y * force[i, 1])
+        force[i, 0], force[i, 1] = force[i, 0] + less_x, force[i, 1] + less_y
+        force[j, 0], force[j, 1] = force[j, 0] - less_x, force[j, 1] - less_y
+    for k in range(len(rows)):
+        i, b = rows[k], carrier[k]
+        total -= one[b, 2] * other[b, 2] * (arms[k, 0] * force[i, 0] + arms[k, 1] * force[i, 1])
     return total
 
 

@@ -28,10 +28,10 @@ from .actions import resist
 from .arrays import Array, Flags, Indices
 from .effects import CURL, Gravity, PreStrain, RootCompliance, StripDamping, StripDrag
 from .law import CURL_TABLE, FORCES, MATERIAL, TANGENT, TERMS
-from .loads import Loads, Pulls, add_links, links_of, pull, pulls_of
+from .loads import Loads, Pulls, link_matrices, links_of, pull, pulls_of
 from .matrix import Envelope, Symmetric, assemble
 from .model import Model
-from .places import FREE, carry, carry_velocity
+from .places import FREE, Rows, carry, carry_velocity, gather, turned
 from .plate import left_in_elements
 
 
@@ -45,8 +45,8 @@ class Evaluation(NamedTuple):
         potential [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
-        matrices (E, 8, 8): tangents of the elements, none if they were not asked for. curvature (rows, 2):
-            what the carrying of nodes, and of weight, links and loads, adds to the stiffness of turns [N m].
+        matrices (E + K, 8, 8): tangents of the elements and of the K links, none if they were not asked for.
+        curvature (rows,): what the carrying of rows adds to the stiffness of turns [N m].
     """
 
     gradient: Array
@@ -70,14 +70,16 @@ class Structure:
 
     def __init__(self, model: Model, points: ArrayLike | None = None) -> None:
         self.model = model
-        self.basis = _strip_basis(model)
-        self.elements = Elements.of(model)
         self.shear = model.element == "reissner"
         self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
         self.strips, self.stations = model.arcs.shape
         #: rows of the nodes, from which on come those of the bodies and of the ground
         self.nodes = model.arcs.size
-        soft = self._number()
+        damping, drag = model.effects.find(StripDamping), model.effects.find(StripDrag)
+        #: relaxation time of the strips [s], and rate of their drag [1/s]
+        self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
+        self.basis, self.elements = _strip_basis(model), Elements.of(model)
+        self._number()
         self.length = float(model.lengths.max())
         rigidity = max(strip.flexural_rigidity for strip in model.strips)
         self.force_unit, self.moment_unit = rigidity / self.length**2, rigidity / self.length
@@ -88,58 +90,59 @@ class Structure:
         self.measure = np.where(self.axis == 2, 1.0, 1.0 / self.length)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
         self.given = self.shear, self.elements.table(), first, CURL_TABLE
-        damping, drag = model.effects.find(StripDamping), model.effects.find(StripDrag)
-        #: relaxation time of the strips [s], and rate of their drag [1/s]
-        self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
-        self.links = links_of(model, self.points, soft, self.relaxation)
-        self.loads = Loads.of(model, self.points)
         dampers = self.relaxation, self.drag * self.nodal_masses() if self.drag else np.zeros(0)
-        self.damped = bool(self.relaxation or self.drag or self.links[4].any())
+        self.damped = bool(self.relaxation or self.drag or self.links[3].any())
         self.tables = (self.given, self.carried, self._weight(), self.links, self.loads.pulls, dampers)
-        rows, many = len(self.numbers), len(self.element_numbers)
+        rows, many = len(self.numbers), len(first)
         viscous = np.zeros((many if self.relaxation else 0, 8, 8))
         #: what a motion writes: forces, ends, matrices and scratch of the elements, and curvature
         self.written = (np.zeros((rows, 3)), np.zeros((many, 5)), viscous, np.zeros((4, 4)))
-        self.curvature, self._still = np.zeros((rows, 2)), np.zeros((rows, 3))
+        self.curvature, self._still = np.zeros(rows), np.zeros((rows, 3))
 
-    def _number(self) -> list[tuple[int, int, float]]:
-        """Number the reduced coordinates: those of rows (rows, 3), and of elements (E, 8).
-
-        -1 marks what is clamped. Returned is of the roots that give way: node, row of what it is on and
-        stiffness [N m].
-        """
+    def _number(self) -> None:
+        """Number rows and reduced coordinates; -1 marks a coordinate that is clamped, a row not carried."""
         grid, ends = np.arange(self.nodes).reshape(self.strips, -1), self.model.ends
         stiffness, at_ends = _root_stiffness(self.model), grid[:, [0, -1]]
-        end, strip = np.nonzero(ends.T >= 0)
-        node, carrier = at_ends[strip, end], ends[strip, end]
-        offsets = self.model.rest.reshape(-1, 2)[node] - self.points[carrier]
-        self.carried = (node, self.nodes + carrier, offsets, np.isinf(stiffness[strip, end]))
-        soft = np.isfinite(stiffness)
+        strip, end = np.nonzero(ends >= 0)
+        node, carrier, soft = at_ends[strip, end], ends[strip, end], np.isfinite(stiffness)
+        points = Rows(self.nodes, self.points)
+        carriers = np.where(ends[soft] >= 0, self.nodes + ends[soft], points.ground)
+        roots = list(zip(at_ends[soft], carriers, stiffness[soft], strict=True))
+        self.links, self.loads = (
+            links_of(self.model, roots, self.relaxation, points),
+            Loads.of(self.model, points),
+        )
+        #: rows of the bodies' centres
+        self.centres = np.array(
+            [points.of(k, place) for k, place in enumerate(self.model.centres)], dtype=int
+        )
+        beyond = np.arange(len(points.carriers))
+        rows = np.append(node, points.ground + 1 + beyond)
+        bodies = np.append(self.nodes + carrier, np.array(points.carriers, dtype=np.int64))
+        offsets = np.vstack([self.model.rest.reshape(-1, 2)[node] - self.points[carrier], *points.offsets])
+        rigid = np.append(np.isinf(stiffness[strip, end]), beyond >= 0)
+        self.carried = (rows, bodies, offsets, rigid, offsets.copy())
         free = np.setdiff1d(grid, at_ends[ends != FREE])
         nodal = np.append(3 * free[:, None] + np.arange(3), 3 * at_ends[soft] + 2)
-        bodies = np.arange(3 * self.nodes, 3 * (self.nodes + len(self.points)))
         #: where in rows the coordinates are
-        self.coordinates, self.first_body = np.append(nodal, bodies), len(nodal)
-        self.size = len(self.coordinates)
+        self.coordinates = np.append(nodal, np.arange(3 * self.nodes, 3 * points.ground))
+        self.first_body, self.size = len(nodal), len(self.coordinates)
         self.turns = np.arange(self.first_body + 2, self.size, 3)
-        self.numbers = np.full((self.nodes + len(self.points) + 1, 3), -1, dtype=np.int64)
-        self.numbers[node] = self.turns[carrier, None] + np.arange(-2, 1)
+        self.numbers = np.full((points.ground + 1 + len(beyond), 3), -1, dtype=np.int64)
+        self.numbers[rows] = self.turns[bodies - self.nodes, None] + np.arange(-2, 1)
         self.numbers.reshape(-1)[self.coordinates] = np.arange(self.size)
-        self.ends, turns = np.full((2, self.strips, self.stations - 1, 2), -1)
-        place = (strip, end * (self.stations - 2), end)
-        self.ends[place], turns[place] = np.arange(len(node)), self.turns[carrier]
-        self.ends = self.ends.reshape(-1, 2)
-        own = self.numbers.ravel()[self.basis.element_dofs].T
-        self.element_numbers = np.hstack([own, turns.reshape(-1, 2)])
-        rows = np.where(ends[soft] >= 0, ends[soft], len(self.points)) + self.nodes
-        return list(zip(at_ends[soft], rows, stiffness[soft], strict=True))
+        #: which of the carried rows a row is, and the row that it goes with, else its own
+        self.places, self.carriers = np.full(len(self.numbers), -1), np.arange(len(self.numbers))
+        self.places[rows], self.carriers[rows] = np.arange(len(rows)), bodies
+        #: pairs of rows with a matrix between them: of elements, links, and of bodies with the ground
+        fixed = np.full(len(self.centres), points.ground)
+        self.pairs = np.vstack([self.basis.mesh.t.T, self.links[1], np.stack([self.centres, fixed], axis=1)])
 
     @cached_property
     def pattern(self) -> Envelope:
         """Where the entries of matrices in the reduced coordinates lie."""
-        bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
-        links = self.numbers[self.links[1]].reshape(-1, 6)
-        return Envelope(self.element_numbers, bodies, links, self.size)
+        turns = np.where(self.places[self.pairs] >= 0, self.numbers[self.carriers[self.pairs], 2], -1)
+        return Envelope(np.hstack([self.numbers[self.pairs].reshape(-1, 6), turns]), self.size)
 
     def bodies(self, y: Array) -> Array:
         """Return the part of the bodies (..., B, 3) of coordinates [m, rad] or velocities (..., size)."""
@@ -153,13 +156,10 @@ class Structure:
         """
         gravity = self.model.effects.find(Gravity)
         if gravity is None:
-            return pulls_of(np.zeros(0), np.zeros((0, 6)))
-        (attached, carrier, offsets, _), own = self.carried, [body.mass for body in self.model.bodies]
-        masses = np.append(self.nodal_masses(), own)
-        rows, table = np.arange(len(masses)), np.zeros((len(masses), 6))
+            return pulls_of([], [])
+        masses = np.append(self.nodal_masses(), [body.mass for body in self.model.bodies])
+        rows, table = np.append(np.arange(self.nodes), self.centres), np.zeros((len(masses), 4))
         table[:, :2] = masses[:, None] * gravity.acceleration
-        table[self.nodes :, 3:5] = self.model.centres - self.points
-        rows[attached], table[attached, 3:5] = carrier, offsets
         free = self.numbers[rows, 0] >= 0
         return pulls_of(rows[free], table[free])
 
@@ -178,6 +178,10 @@ class Structure:
         """
         terms = Symmetric(tangent.pattern, np.abs(tangent.data)).times(1.0 / self.measure)
         return np.asarray(4.0 * np.finfo(float).eps * terms)
+
+    def of_bodies(self, rows: Array) -> Array:
+        """Return what of values of rows (rows, ...) is of the bodies (B, ...), of any unit."""
+        return rows[self.nodes : self.nodes + len(self.points)]
 
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""
@@ -216,14 +220,16 @@ class Structure:
     def velocity(self, y: Array, v: Array) -> Array:
         """Return the rates of displacement and turn of all rows, (rows, 3) [m/s, rad/s]."""
         full = self.spread(v)
-        carry_velocity(self.carried, self.spread(y), full)
+        self.displacement(y)  # for the arms
+        carry_velocity(self.carried, full)
         return full
 
     def load_force(self, y: Array, load: Array, dead: bool = False) -> tuple[Array, float]:
         """Return generalised force and work [J] of loads times factors (K,), or of the dead ones."""
         force, (_, table, factors, _) = np.zeros((len(self.numbers), 3)), self.loads.pulls
-        factors[:] = load * (1.0 - table[:, 5]) if dead else load
-        work = pull(self.loads.pulls, -1.0, self.displacement(y), force, np.empty((len(force), 2)))
+        factors[:] = load * (1.0 - table[:, 3]) if dead else load
+        work = pull(self.loads.pulls, -1.0, self.displacement(y), force)
+        gather(self.carried, force, np.empty(len(force)))
         return self.gathered(force), work
 
     def evaluate(
@@ -233,46 +239,53 @@ class Structure:
 
         load (K,): factors of the loads, of which the share `acts` is in the gradient and in the tangent.
         """
-        many, tangent = len(self.element_numbers), self.pattern.zero()
+        many, tangent = len(self.elements.length), self.pattern.zero()
         matrices, ends = np.zeros((many if asked != FORCES else 0, 8, 8)), np.empty((many, 5))
         u, (force, _, _, scratch) = self.displacement(y), self.written
-        written, curvature = (force, ends, matrices, scratch), np.empty((len(u), 2))
+        written, curvature = (force, ends, matrices, scratch), np.empty(len(u))
         self.loads.pulls[2][:] = 0.0 if load is None else load
         found = resist(self.tables, share, acts, asked, (u, self._still), written, curvature)
         strain, spring, gravity, work, _ = found
-        if asked != FORCES:
-            tangent = self.reduced_matrix(matrices, u)
         if asked == TANGENT:
-            bodies = curvature[self.nodes : -1].sum(axis=1)
-            tangent.data[self.pattern.diagonal[self.turns]] += bodies
-            if len(self.links[1]):
-                add_links(self.links, u, self.links[3], tangent)
+            matrices = np.concatenate([matrices, link_matrices(self.links[2])])
+            tangent = self.reduced_matrix(matrices)
+            tangent.data[self.pattern.diagonal[self.turns]] += self.of_bodies(curvature)
             if load is not None and self.loads.follows:
-                tangent.left, tangent.right = self.loads.tangent(acts, self.numbers, u, self.size)
+                tangent.left, tangent.right = self._following(acts, u)
         gradient = self.gathered(force)
         return Evaluation(gradient, tangent, strain, spring, gravity, work, ends, matrices, curvature)
 
-    def reduced_matrix(self, matrices: Array, u: Array) -> Symmetric:
-        """Return element matrices (E, 8, 8) [N/m, N, N m] assembled as P^T K P (size, size).
+    def _following(self, acts: float, u: Array) -> tuple[Array, Array]:
+        """Return vectors (R, size), whose products a share of the loads that follow adds to the tangent."""
+        rows, table, factors, _ = self.loads.pulls
+        left, right = np.zeros((2, len(self.loads.following), self.size))
+        for r, k in enumerate(self.loads.following):
+            row, place = rows[k], self.places[rows[k]]
+            x, y = turned(u[row, 2], *(acts * factors[k] * table[k, :2]))
+            left[r, self.numbers[row, :2]] = y, -x
+            if place >= 0:  # the turn of the force less that of its arm, which is in the curvature
+                left[r, self.numbers[row, 2]] = -float(self.carried[4][place] @ (x, y))
+            right[r, self.numbers[row, 2]] = 1.0
+        return left, right
+
+    def reduced_matrix(self, matrices: Array) -> Symmetric:
+        """Return matrices (M, 8, 8) [N/m, N, N m] of the first pairs assembled as P^T K P (size, size).
+
+        The arms are those of the displacements that were evaluated last.
 
         Args:
-            matrices: element matrices, of stiffness or damping. See `assemble`.
-            u: displacements of all rows (rows, 3) [m, rad].
+            matrices: of stiffness, damping or mass. See `assemble`.
         """
         whole = self.pattern.zero()
-        assemble(matrices, self.ends, self.carried, u, self.pattern.places, whole.data)
+        assemble(matrices, self.places[self.pairs], self.carried, self.pattern.places, whole.data)
         return whole
 
     def damping_matrix(self, y: Array) -> Symmetric:
         """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""
-        local, u = np.zeros((len(self.element_numbers), 8, 8)), self.displacement(y)
-        if self.relaxation:
-            local += self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
+        local = self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
         half = 0.5 * self.drag * self.elements.linear_density * self.elements.length
         local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]
-        whole = self.reduced_matrix(local, u)
-        add_links(self.links, u, self.links[4], whole)
-        return whole
+        return self.reduced_matrix(np.concatenate([local, link_matrices(self.links[3])]))
 
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
