@@ -53,7 +53,6 @@ class State:
         torque, stiffness: generalised force on the driven turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is driven.
         work: of loads and drives since the first state of the path [J].
-        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
     """
 
     y: Array
@@ -71,7 +70,6 @@ class State:
     torque: float = np.nan
     stiffness: float = np.nan
     work: float = 0.0
-    behind: tuple[tuple[float, Array, Array], ...] = ()
 
     @property
     def inertia(self) -> int:

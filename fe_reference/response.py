@@ -5,9 +5,8 @@ Critical points lie between or beyond the states of a path; they are named in wo
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -258,28 +257,16 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 
-def _limits(control: Control, last: State) -> list[float]:
-    """Return what is left to a limit of the parameter after a state, by each two states behind each other.
+def limit_point(control: Control, trail: Sequence[State]) -> list[CriticalPoint]:
+    """Return the limit point that a path ran into right after the last of its states, if it did.
 
     Next to a limit the parameter is short of it by the square of the way to it. So the square of the rate
-    there grows as one over the rest.
+    there grows as one over the rest. The coordinates are off by twice the rate times the rest. It goes on
+    there along its tangent, at the same load.
     """
-    states = ((last.parameter, last.y, last.rate), *last.behind)
-    free = control.structure.measure * ~control.is_held
-    fast = [(parameter, float(np.sum((free * rate) ** 2))) for parameter, _, rate in states]
-    return [
-        p - last.parameter + (p - before) * slow / (size - slow) if size > slow else np.inf
-        for (p, size), (before, slow) in pairwise(fast)
-    ]
-
-
-def limit_point(control: Control, last: State) -> list[CriticalPoint]:
-    """Return the limit point that a path ran into right after its last state, if it did.
-
-    The coordinates are off by twice the rate times the rest. It goes on there along its tangent, at the same
-    load.
-    """
-    rest, *_ = _limits(control, last) or [np.inf]
+    free, last = control.structure.measure * ~control.is_held, trail[-1]
+    slow, fast = (float(np.sum((free * state.rate) ** 2)) for state in (trail[-2:][0], last))
+    rest = (last.parameter - trail[-2:][0].parameter) * slow / (fast - slow) if fast > slow else np.inf
     if abs(rest) > NEAR:
         return []
     kind = "turning point" if control.turning else "limit point"
