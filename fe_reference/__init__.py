@@ -19,11 +19,11 @@ rest; a test holds both elements to that.
 from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
-from .errors import ConvergenceError, InvalidParameter
 from .model import ELEMENTS, BodyDesign, Model, compliant_mechanism, cross_axis_pivot
 from .modes import Modes, natural_frequencies
 from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
+from .read import ConvergenceError, InvalidParameter
 from .response import CriticalPoint
 from .solid import SolidPath, SolidStrip, solve_solids
 from .solution import ErrorEstimate, StaticSolution, Status, StripFields, strip_fields

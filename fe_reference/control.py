@@ -22,9 +22,9 @@ from scipy.linalg import null_space
 
 from .arrays import Array, Flags, Indices
 from .effects import factor_of, twice
-from .errors import InvalidParameter
 from .matrix import Factors, Singular
 from .places import FREE, GROUND
+from .read import InvalidParameter
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.

@@ -17,7 +17,6 @@ import numpy as np
 from . import read
 from .arrays import Array, Flags
 from .effects import ALWAYS_FULL, factor_of, twice
-from .errors import InvalidParameter
 from .mass import RigidBodies
 from .model import Model
 from .structure import Structure
@@ -66,8 +65,7 @@ class DrivenRotation(read.Checked):
     def __post_init__(self) -> None:
         super().__post_init__()
         begin, end = self.held
-        if not begin < end:
-            raise InvalidParameter("held", self.held, "two instants, the first before the second [s]")
+        read.refuse(not begin < end, "held", self.held, "two instants, the first before the second [s]")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,12 +18,12 @@ import numpy as np
 from . import read
 from .arrays import Array
 from .drives import DrivenRotation, drive_spans
-from .errors import ConvergenceError, InvalidParameter
 from .mass import carried_over
 from .model import Model, require_model
 from .modes import first_frequency
 from .motion import Progress, Trajectory, trajectory
 from .places import FREE
+from .read import ConvergenceError, InvalidParameter
 from .schemes import RADIUS, Explicit, Implicit
 from .solution import Status
 from .statics import settled_state

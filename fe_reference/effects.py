@@ -11,7 +11,7 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 
 from . import read
-from .errors import InvalidParameter
+from .read import InvalidParameter
 
 #: The history of what does not change.
 ALWAYS_FULL: read.History = ((0.0, 1.0),)
@@ -106,8 +106,7 @@ class Spring(Several):
     def __post_init__(self) -> None:
         super().__post_init__()
         own = (*self.stiffness, self.rotational_stiffness, *self.damping, self.rotational_damping)
-        if not any(own):
-            raise InvalidParameter("spring", self.body, "a stiffness or a damping above 0 [N/m]")
+        read.refuse(not any(own), "spring", self.body, "a stiffness or a damping above 0 [N/m]")
         if self.other is not None and self.other == self.body:
             raise InvalidParameter("other", self.other, "another body, or None for the ground [name]")
 
@@ -247,8 +246,7 @@ class Effects:
             ({"bending", "stretching"} <= set(names), "bending and stretching, which every element has"),
             (rotary, "strip_inertia beside section_rotary_inertia"),
         ):
-            if not holds:
-                raise InvalidParameter("effects", names, f"{expected} [name]")
+            read.refuse(not holds, "effects", names, f"{expected} [name]")
         if stray := [name for name in parameters if name not in names]:
             expected = f"one of the named effects {', '.join(names)} [name]"
             raise InvalidParameter("parameters", stray[0], expected)
@@ -310,8 +308,7 @@ def _each(name: str, given: Given) -> Iterable[Effect]:
     known = [*needed, *others] if name in TAKES else [each.name for each in own]
     for parameters in every:
         for key in parameters:
-            if key not in known:
-                raise InvalidParameter(name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
+            read.refuse(key not in known, name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
         if missing := [key for key in needed if parameters.get(key) is None]:
             raise InvalidParameter(name, dict(parameters), f"a value of {', '.join(missing)} [name]")
         yield kind(**parameters)

@@ -28,8 +28,8 @@ from .effects import (
     index_of,
     twice,
 )
-from .errors import InvalidParameter
 from .places import FREE, GROUND
+from .read import InvalidParameter
 from .strip import FIXED, StripDesign
 
 ELEMENTS = ("corotational", "reissner")
@@ -95,13 +95,10 @@ class Model:
         if "shear" in self.effects and self.element == ELEMENTS[0]:
             raise InvalidParameter("element", self.element, f"{ELEMENTS[1]} for shear [name]")
         read.count("elements", self.elements)
-        if FIXED in self.body_names:
-            raise InvalidParameter("bodies", FIXED, "another name for a body that moves [name]")
+        read.refuse(FIXED in self.body_names, "bodies", FIXED, "another name for a body that moves [name]")
         for kind, names in (("strips", self.strip_names), ("bodies", self.body_names)):
-            if len(set(names)) != len(names):
-                raise InvalidParameter(kind, names, "names that differ [name]")
-        if not self.ends.size:
-            raise InvalidParameter("strips", self.strips, "one or more strips")
+            read.refuse(len(set(names)) != len(names), kind, names, "names that differ [name]")
+        read.refuse(not self.ends.size, "strips", self.strips, "one or more strips")
         if not (np.diff(self.arcs) > 0.0).all():
             raise InvalidParameter("strips", "ends that coincide", "elements of a length above 0 [m]")
         self._check_places()

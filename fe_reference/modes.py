@@ -11,11 +11,11 @@ from . import read
 from .arrays import Array, Flags
 from .control import NothingHolds, loose_coordinates
 from .effects import DEFAULT_EFFECTS, Effects
-from .errors import ConvergenceError, InvalidParameter
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
 from .places import GROUND
+from .read import ConvergenceError, InvalidParameter
 from .refined import Quantities, missed, refine
 from .solution import ErrorEstimate
 from .statics import settled_state
@@ -135,8 +135,7 @@ def natural_frequencies(
     if structure_of(pivot).loads.follows:
         expected = "a fixed direction for modes, as flutter is not modelled; `release` follows it [1]"
         raise InvalidParameter("follower", True, expected)
-    if rotation is None and held:
-        raise InvalidParameter("held", held, "a driven rotation to hold [1]")
+    read.refuse(rotation is None and held, "held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
         nonlocal count
@@ -258,6 +257,5 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
 
 def _available(wanted: int, available: int) -> int:
     """Return the wanted number of modes, or as many as there are; refuse a mesh without one."""
-    if not available:
-        raise InvalidParameter("count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
+    read.refuse(not available, "count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
     return min(read.count("count", wanted), available)

@@ -11,11 +11,11 @@ import numpy as np
 from .actions import couple, resist
 from .arrays import Array, Flags
 from .drives import Span
-from .errors import Norms
 from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
 from .mass import about_mass_centre, carried_over
 from .model import Model
+from .read import Norms
 from .solution import Answer, Status
 from .structure import structure_of
 

@@ -22,8 +22,8 @@ from numpy.polynomial.legendre import leggauss
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
-from .errors import InvalidParameter
 from .matrix import GRAIN, Singular
+from .read import InvalidParameter
 from .response import CriticalPoint, critical_point, limit_point, respond, tipping
 
 Progress = Callable[[int, int], None]

@@ -39,13 +39,13 @@ import numpy as np
 
 from .actions import advance
 from .arrays import Array, Flags
-from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .loads import fastest
 from .mass import lumped_elements
 from .matrix import Factors, Singular
 from .model import Model
 from .motion import Instant, Scheme
+from .read import InvalidParameter
 
 
 class Explicit(Scheme):

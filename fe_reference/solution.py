@@ -12,10 +12,10 @@ import numpy as np
 
 from .arrays import Array, Indices
 from .effects import PreStrain
-from .errors import ConvergenceError, InvalidParameter, Norms
 from .law import FORCES
 from .model import Model, require_model
 from .places import FREE
+from .read import ConvergenceError, InvalidParameter, Norms
 from .response import CriticalPoint, body_stiffness
 from .structure import structure_of
 
