@@ -193,8 +193,8 @@ def spans(
     parameters = [leg / legs for leg in range(legs + 1)]
     shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if before else parameters
     ways: dict[int, Any] = {}
-    for at, (end, history) in led.items():
-        begin = factor_of(history, 0.0) if starts and history else 1.0
+    for at, (end, effect) in led.items():
+        begin = factor_of(effect.leads, 0.0) if starts and effect.leads else 1.0
         ways[structure.first_body + at] = np.multiply(shares, end * begin)
     if rotations is not None:
         if turn in ways:

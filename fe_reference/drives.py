@@ -16,14 +16,13 @@ import numpy as np
 
 from . import read
 from .arrays import Array, Flags
-from .effects import ALWAYS_FULL, factor_of, twice
+from .effects import ALWAYS, ALWAYS_FULL, Prescribed, factor_of
 from .mass import RigidBodies
 from .model import Model
 from .structure import Structure
 
 #: Instants nearer than this part of the motion are the same.
 SAME = 1e-12
-ALWAYS = (0.0, math.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +65,16 @@ class DrivenRotation(read.Checked):
         super().__post_init__()
         begin, end = self.held
         read.refuse(not begin < end, "held", self.held, "two instants, the first before the second [s]")
+
+    @property
+    def ends(self) -> tuple[None, None, float]:
+        """The turn [rad] that the body is led to (3,), None where it is free."""
+        return None, None, self.angle
+
+    @property
+    def leads(self) -> read.History:
+        """How it goes on in a motion."""
+        return self.history
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,16 +145,11 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     Raises:
         InvalidParameter: two drives of one coordinate.
     """
-    led = model.prescribed(None).items()
-    drives = {at: (end, history, ALWAYS) for at, (end, history) in led if history is not None}
-    if drive is not None:
-        turn = 3 * model.body_index(drive.body) + 2
-        if turn in drives:
-            raise twice(model.body_names, turn)
-        drives[turn] = drive.angle, drive.history, drive.held
+    every = [*model.every(Prescribed), *([drive] if drive else [])]
+    drives = {at: led for at, led in model.prescribed(None, every).items() if led[1].leads}
     times = {duration}
-    for _, history, held in drives.values():
-        times |= {*held, *(time for time, _ in history)}
+    for _, effect in drives.values():
+        times |= {*effect.held, *(time for time, _ in effect.leads)}
     instants = [0.0]
     for time in sorted(times):
         if instants[-1] + SAME * duration < time <= duration:
@@ -153,9 +157,9 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     spans: list[Span] = []
     for begin, end in pairwise([*instants[:-1], duration]):
         rates = {
-            at: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * target
-            for at, (target, history, held) in drives.items()
-            if held[0] < 0.5 * (begin + end) < held[1]
+            at: (factor_of(led.leads, end) - factor_of(led.leads, begin)) / (end - begin) * target
+            for at, (target, led) in drives.items()
+            if led.held[0] < 0.5 * (begin + end) < led.held[1]
         }
         before = spans[-1].rates if spans else {}
         spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))

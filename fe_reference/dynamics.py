@@ -230,7 +230,7 @@ def solve_motion(
     True
     """
     require_model(mechanism)
-    mechanism.effects.require_inertia()
+    mechanism.require_inertia()
     run, check = Run(**asked), read.flag("check", check)
     y, remark = np.zeros(structure_of(mechanism).size), ""
     if run.settled:

@@ -112,7 +112,7 @@ class Loads:
     def of(cls, model: Model, points: Rows) -> "Loads":
         """Return those of a model on the rows of its nodes and `points` of its bodies."""
         rows, table, histories = [], [], list[read.History]()
-        for load in model.effects.every(Load):
+        for load in model.every(Load):
             if load.strip is not None:
                 rows.append((model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1)
             else:
@@ -163,12 +163,12 @@ def links_of(model: Model, soft: Sequence[tuple[int, int, float]], relaxation: f
     soft: of the roots that give way: node, row of what it is on, and stiffness [N m]. relaxation: their time
     of relaxation [s].
     """
-    effects, found = model.effects, []
+    found: list[tuple[float, ...]] = []
     for node, row, stiffness in soft:
         if stiffness > 0.0:  # a hinge has none
             found.append((node, row, 0.0, 0.0, stiffness, 0.0, 0.0, relaxation * stiffness))
-    roots, every = len(found), [(model.body_index(each.body), each) for each in effects.every(Spring)]
-    damper = effects.find(BodyDamping)
+    roots, every = len(found), [(model.body_index(each.body), each) for each in model.every(Spring)]
+    damper = model.find(BodyDamping)
     if damper is not None and (damper.translation or damper.rotation):
         own = Spring(damping=(damper.translation,) * 2, rotational_damping=damper.rotation)
         every += [(body, own) for body in range(len(model.bodies))]

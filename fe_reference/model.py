@@ -8,24 +8,24 @@ is the one of two straight strips that cross without touching, and their body.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
 from . import read
 from .arrays import Array, Indices, rotation_matrix
 from .effects import (
-    ALWAYS_FULL,
     CURL,
     DEFAULT_EFFECTS,
     SIDES,
-    Effects,
+    Effect,
     Given,
     Load,
+    Named,
     Prescribed,
     PreStrain,
     Spring,
-    index_of,
+    named,
     twice,
 )
 from .places import FREE, GROUND
@@ -33,6 +33,7 @@ from .read import InvalidParameter
 from .strip import FIXED, StripDesign
 
 ELEMENTS = ("corotational", "reissner")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +89,7 @@ class Model:
     bodies: tuple[BodyDesign, ...] = ()
     element: str = "corotational"
     elements: int = 20
-    effects: Effects = field(default_factory=Effects)
+    effects: Named = field(default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, (Effect(),)))
 
     def __post_init__(self) -> None:
         read.choice("element", self.element, ELEMENTS)
@@ -106,18 +107,17 @@ class Model:
 
     def _check_places(self) -> None:
         """Refuse loads, springs and drives on what is not there."""
-        effects, bodies = self.effects, self.body_names
-        for load in effects.every(Load):
+        for load in self.every(Load):
             if load.strip is None:
-                index_of(bodies, load.body)
+                self.body_index(load.body)
             elif self.ends[self.strip_index(load.strip), 1] != FREE:
                 raise InvalidParameter("tip_force", load.strip, "a strip whose tip is free [name]")
-        for spring in effects.every(Spring):
-            index_of(bodies, spring.body)
-            index_of(bodies, spring.other or spring.body)
-        led = effects.every(Prescribed)
-        if led and not bodies:
-            name = next(name for name, same in effects.named.items() if led[0] in same)
+        for spring in self.every(Spring):
+            self.body_index(spring.body)
+            self.body_index(spring.other or spring.body)
+        led = self.every(Prescribed)
+        if led and not self.bodies:
+            name = next(name for name, same in self.effects.items() if led[0] in same)
             raise InvalidParameter(name, "no bodies", "a body to lead [name]")
         # those that name no body are of the one that is driven, which only a solve knows
         self.prescribed(None, [each for each in led if each.body is not None])
@@ -126,7 +126,7 @@ class Model:
         """Refuse effects of the strips' sides where they do not hold."""
         named = [name for name in SIDES if name in self.effects]
         curl = [name for name in CURL if name in named]
-        natural = self.effects.find(PreStrain)
+        natural = self.find(PreStrain)
         if curl and natural is not None and natural.curvature:
             raise InvalidParameter(
                 curl[0], "natural curvature", "strips that are straight when free of stress"
@@ -182,31 +182,54 @@ class Model:
         return tuple(body.name for body in self.bodies)
 
     def body_index(self, name: str | None) -> int:
-        """Return the place of the body of this name; None means the only one there is."""
-        return index_of(self.body_names, name)
+        """Return the place of the body of this name; None means the only one there is.
 
-    def prescribed(
-        self, body: int | None, led: Sequence[Prescribed] | None = None
-    ) -> dict[int, tuple[float, read.History | None]]:
-        """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
+        Raises:
+            InvalidParameter: the name is unknown, or None with several bodies.
+        """
+        bodies = self.body_names
+        if len(bodies) != 1 if name is None else name not in bodies:
+            raise InvalidParameter("body", name, f"one of {', '.join(bodies) or 'no bodies'} [name]")
+        return 0 if name is None else bodies.index(name)
+
+    def every(self, kind: type[T]) -> list[T]:
+        """Return all effects of this class."""
+        return [each for same in self.effects.values() for each in same if isinstance(each, kind)]
+
+    def find(self, kind: type[T]) -> T | None:
+        """Return the effect of this class, or None if it is not named."""
+        return next(iter(self.every(kind)), None)
+
+    def require_inertia(self) -> None:
+        """Check that the effects give a motion inertia.
+
+        Raises:
+            InvalidParameter: a motion is asked for, but nothing in the model has inertia.
+        """
+        names = tuple(self.effects)
+        if not {"strip_inertia", "body_inertia"} & set(names):
+            raise InvalidParameter("effects", names, "strip_inertia or body_inertia for a motion [name]")
+
+    def prescribed(self, body: int | None, led: Sequence[Any] | None = None) -> dict[int, tuple[float, Any]]:
+        """Return what drives and supports prescribe: end [m, rad] of a coordinate, and by which of them.
 
         Coordinate k of body b stands under 3 b + k.
 
         Args:
             body: number of the body where the effects name none; None: the only one.
-            led: the drives and supports, by default all.
+            led: the drives and supports, by default all of the scene.
 
         Raises:
             InvalidParameter: a coordinate is prescribed twice, or a name is unknown.
         """
-        found: dict[int, tuple[float, read.History | None]] = {}
-        for effect in self.effects.every(Prescribed) if led is None else led:
+        found: dict[int, tuple[float, Any]] = {}
+        for effect in self.every(Prescribed) if led is None else led:
             index = body if effect.body is None and body is not None else self.body_index(effect.body)
             for at, end in enumerate(effect.ends, start=3 * index):
                 if at in found and end is not None:
                     raise twice(self.body_names, at)
                 if end is not None:
-                    found[at] = (end, ALWAYS_FULL if effect.fixed else effect.history)
+                    found[at] = end, effect
         return found
 
     def strip_index(self, name: str) -> int:
@@ -274,7 +297,7 @@ def compliant_mechanism(
         bodies=tuple(bodies),
         element=element,
         elements=elements,
-        effects=Effects.read(effects, parameters or {}),
+        effects=named(effects, parameters or {}),
     )
 
 

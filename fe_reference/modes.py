@@ -10,7 +10,7 @@ from scipy.sparse.linalg import eigsh, splu
 from . import read
 from .arrays import Array, Flags
 from .control import NothingHolds, loose_coordinates
-from .effects import DEFAULT_EFFECTS, Effects
+from .effects import DEFAULT_EFFECTS
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
@@ -131,7 +131,7 @@ def natural_frequencies(
     """
     require_model(pivot)
     kind = read.choice("mass", mass, MASSES)
-    pivot.effects.require_inertia()
+    pivot.require_inertia()
     if structure_of(pivot).loads.follows:
         expected = "a fixed direction for modes, as flutter is not modelled; `release` follows it [1]"
         raise InvalidParameter("follower", True, expected)
@@ -148,7 +148,7 @@ def natural_frequencies(
         tangent = structure.evaluate(y, load=structure.loads.factors(time)).tangent
         at = None if body is None else model.body_index(body)
         # what a release keeps: what is led on, and a held turn
-        kept = [structure.first_body + k for k, (_, history) in model.prescribed(at).items() if history]
+        kept = [structure.first_body + k for k, (_, led) in model.prescribed(at).items() if led.leads]
         kept += [int(structure.turns[at or 0])] if held else []
         values, full = _lowest(structure, y, tangent, ~structure.flags(kept), kind, count)
         count = len(values)  # of finer meshes as many as of the first
@@ -174,8 +174,8 @@ def natural_frequencies(
 
 def first_frequency(model: Model) -> float:
     """Return the first frequency about the shape at rest, of inertia, elasticity and supports alone [Hz]."""
-    kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
-    bare = replace(model, effects=Effects(named=kept))
+    kept = {name: same for name, same in model.effects.items() if name in ELASTIC}
+    bare = replace(model, effects=kept)
     structure = structure_of(bare)
     rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
     clamped = (model.ends == GROUND).any()

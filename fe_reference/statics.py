@@ -149,7 +149,7 @@ def settled_state(
     histories begin; then rigid motions that nothing resists are held until then, whatever it takes. Errors as
     above.
     """
-    structure, moved = structure_of(model), any(any(led.ends) for led in model.effects.every(Prescribed))
+    structure, moved = structure_of(model), any(any(led.ends) for led in model.every(Prescribed))
     ends = None if rotation is None else [read.finite("rotation", rotation, "rad")]
     if not rotation and structure.loads.factors() is None and not moved and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
@@ -181,7 +181,7 @@ def _solved(
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
     steps, structure = read.count("increments", increments), structure_of(model)
-    driven = rotations is not None or any(each.body is None for each in model.effects.every(Prescribed))
+    driven = rotations is not None or any(each.body is None for each in model.every(Prescribed))
     which = model.body_index(body) if driven or body is not None else None
     first = read.choice("order", order, ORDERS) == LOADS_FIRST
     controls = spans(structure, which, rotations, first=first, starts=starts)

@@ -75,7 +75,7 @@ class Structure:
         self.strips, self.stations = model.arcs.shape
         #: rows of the nodes, from which on come those of the bodies and of the ground
         self.nodes = model.arcs.size
-        damping, drag = model.effects.find(StripDamping), model.effects.find(StripDrag)
+        damping, drag = model.find(StripDamping), model.find(StripDrag)
         #: relaxation time of the strips [s], and rate of their drag [1/s]
         self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
         self.basis, self.elements = _strip_basis(model), Elements.of(model)
@@ -154,7 +154,7 @@ class Structure:
         Half of every element is at each of its nodes: an error of second order in the element length. What
         hangs on a clamp is not felt.
         """
-        gravity = self.model.effects.find(Gravity)
+        gravity = self.model.find(Gravity)
         if gravity is None:
             return pulls_of([], [])
         masses = np.append(self.nodal_masses(), [body.mass for body in self.model.bodies])
@@ -167,7 +167,7 @@ class Structure:
     def constant_words(self) -> str:
         """What of weight and natural strains acts, in words; "" where the shape at rest is in equilibrium."""
         acting = {"the weight": Gravity, "the natural strains": PreStrain}
-        return " and ".join(word for word, kind in acting.items() if self.model.effects.find(kind))
+        return " and ".join(word for word, kind in acting.items() if self.model.find(kind))
 
     def round_off(self, tangent: Symmetric) -> Array:
         """Return the residual [N, N m] of every coordinate below which round-off decides (size,).
@@ -352,7 +352,7 @@ class Elements:
         if any(strip.tapered for strip in model.strips):
             for name, growth in zip(rigid, _tapers(model), strict=True):
                 own[name] = own[name] * growth
-        natural = model.effects.find(PreStrain) or PreStrain()
+        natural = model.find(PreStrain) or PreStrain()
         return cls(
             chord=chord,
             length=np.hypot(*chord),
@@ -388,7 +388,7 @@ def _strip_basis(model: Model) -> Basis:
 def _plate(model: Model, k: int) -> Array:
     """Return what the sections of a strip curl in its elements (E, 2 + 2 TERMS)."""
     strip, rows = model.strips[k], np.zeros((model.elements, 2 + 2 * TERMS))
-    if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects.names):
+    if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects):
         return rows
     nu = strip.poisson_ratio
     rows[:, [0, 2, 2 + TERMS]] = nu**2
@@ -404,7 +404,7 @@ def _plate(model: Model, k: int) -> Array:
 
 def _root_stiffness(model: Model) -> Array:
     """Return the stiffness of the roots of the strips (G, 2) [N m]: of hinges 0, inf where none gives way."""
-    rows, effect = np.full((len(model.strips), 2), np.inf), model.effects.find(RootCompliance)
+    rows, effect = np.full((len(model.strips), 2), np.inf), model.find(RootCompliance)
     for strip, ends, row in zip(model.strips, model.ends, rows, strict=True):
         if effect is not None and effect.root and strip.thickness is not None:
             row[ends != FREE] = strip.flexural_rigidity / (effect.root * strip.thickness)
