@@ -258,20 +258,27 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
 
 
 def limit_point(control: Control, trail: Sequence[State]) -> list[CriticalPoint]:
-    """Return the limit point that a path ran into right after the last of its states, if it did.
+    """Return the critical point that a path ran into right after the last of its states, if it did.
 
-    Next to a limit the parameter is short of it by the square of the way to it. So the square of the rate
-    there grows as one over the rest. The coordinates are off by twice the rate times the rest. It goes on
-    there along its tangent, at the same load.
+    Next to a limit the parameter is short of it by the square of the way to it: the rate there grows as the
+    rest to the power -1/2, and the coordinates are off by twice the rate times the rest. It goes on there
+    along its tangent, at the same load. Next to a bifurcation from which an imperfection too small to be
+    followed leads away, the rate grows as the rest to the power -2.
     """
-    free, last = control.structure.measure * ~control.is_held, trail[-1]
-    slow, fast = (float(np.sum((free * state.rate) ** 2)) for state in (trail[-2:][0], last))
-    rest = (last.parameter - trail[-2:][0].parameter) * slow / (fast - slow) if fast > slow else np.inf
-    if abs(rest) > NEAR:
+    if len(trail) < 2:
         return []
-    kind = "turning point" if control.turning else "limit point"
+    last, free = trail[-1], control.structure.measure * ~control.is_held
+    at = np.array([state.parameter for state in trail])
+    fast = np.array([np.linalg.norm(free * state.rate) for state in trail])
+    # powers of the rate that are straight in the parameter, and zero there
+    ends = [at[1:] - line[1:] * np.diff(at) / np.diff(line) for line in (fast**-2.0, fast**-0.5)]
+    leaves = bool(np.ptp(ends[1]) < np.ptp(ends[0]))  # the states tell its place better than that of a limit
+    rest = float(ends[leaves][-1]) - last.parameter
+    if not 0.0 < abs(rest) <= NEAR:
+        return []
+    kind = "bifurcation" if leaves else "turning point" if control.turning else "limit point"
     what = f"{kind}: {_moves(control, last.rate)}"
-    y, parameter = last.y + 2.0 * rest * last.rate, last.parameter + rest
+    y, parameter = last.y + (0.0 if leaves else 2.0 * rest) * last.rate, last.parameter + rest
     return [_point(control, kind, y, parameter, last.inertia + 1, what)]
 
 
