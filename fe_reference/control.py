@@ -43,9 +43,9 @@ class State:
 
     Attributes:
         y (size,), parameter: coordinates and where.
-        residual (size,): [N, N m]; on the held coordinates it is what the drives exert. at: the structure
-            there, whose tangent is d r / d y. potential: of all but loads that follow [J], without which its
-            gradient is r.
+        at: the structure there, whose gradient is the residual r, on the held coordinates what the drives
+            exert, and whose tangent is d r / d y. potential: of all but loads that follow [J], without which
+            its gradient is r.
         norms: of the residuals of Newton's method. failure: "" or why it ended. factors: of the tangent.
         rate: d y / d p (size,).
         conjugate, slope: first and second derivative of the total potential along the path [J].
@@ -57,7 +57,6 @@ class State:
 
     y: Array
     parameter: float
-    residual: Array
     at: Evaluation
     potential: float
     norms: tuple[float, ...] = (0.0,)
@@ -139,7 +138,7 @@ class Control:
         share, acts = parameter if self.settling else 1.0, self.share(parameter)
         at = self.structure.evaluate(y, share, load=self.load, acts=acts)
         potential = sum(at.strain) + at.spring + share * at.gravity - acts * at.work
-        return State(y=y, parameter=parameter, residual=at.gradient, at=at, potential=potential)
+        return State(y=y, parameter=parameter, at=at, potential=potential)
 
     def rates(self, y: Array, parameter: float) -> tuple[Array | None, Array | None, float, float]:
         """Return what p changes at fixed y: r and the gradient of the potential (size,), alike without
@@ -225,7 +224,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         y[control.held] = control.prescribed(parameter)
         counters.update(residual_evaluations=1, tangent_evaluations=1)
         found, factors = control.balance(y, parameter), None
-        residual = np.where(control.is_held, 0.0, found.residual)
+        residual = np.where(control.is_held, 0.0, found.at.gradient)
         norms.append(float(np.abs(residual / structure.scale).max(initial=0.0)))
         failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
         if not failure:
@@ -236,7 +235,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
                 failure = str(error)
         if factors is None:
             break
-        last = factors.solve(found.residual)
+        last = factors.solve(found.at.gradient)
         size = structure.extent(last)
         done = size <= LAST or size > 0.5 * before
         if done:

@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 
 from . import read
-from .arrays import Array, Indices, rotation_matrix
+from .arrays import Array, Indices
 from .effects import (
     CURL,
     DEFAULT_EFFECTS,
@@ -376,7 +376,8 @@ def cross_axis_pivot(
     run, rise = length * np.cos(angle), length * np.sin(angle)
     ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
     ends = ground + np.array([[run, rise], [-run, rise]])
-    turn = rotation_matrix(read.finite("orientation", orientation, "rad")).T
+    turned = read.finite("orientation", orientation, "rad")
+    turn = np.array([[np.cos(turned), np.sin(turned)], [-np.sin(turned), np.cos(turned)]])
     offset = np.array(read.pair("centre_offset", centre_offset, "m"))
     ground, ends, offset = ground @ turn, ends @ turn, offset @ turn
     centre = ends.mean(axis=0) + offset

@@ -36,8 +36,8 @@ def respond(control: Control, found: State) -> State:
     moves = np.zeros((len(held), control.structure.size))
     moves[np.arange(len(held)), held] = 1.0
     moves -= factors.solve(tangent.times(moves))
-    left = factors.solve(found.residual)
-    drive, rate = (found.residual - tangent.times(left))[held], control.slope @ moves
+    left = factors.solve(found.at.gradient)
+    drive, rate = (found.at.gradient - tangent.times(left))[held], control.slope @ moves
     change, bent, first, second = control.rates(found.y, found.parameter)
     if change is not None and bent is not None:
         rate -= factors.solve(change)

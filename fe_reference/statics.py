@@ -187,7 +187,7 @@ def _solved(
     controls = spans(structure, which, rotations, first=first, starts=starts)
     path = follow(controls, steps, progress)
     for state in () if starts else reversed(path.states):  # the load in full is named
-        require_balance(path.control, state.residual)
+        require_balance(path.control, state.at.gradient)
     shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
     driven_body = None if which is None else model.body_names[which]
     return _packed(path, np.array([0.0, *shares]), driven_body, rotations is not None)
