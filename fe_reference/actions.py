@@ -1,9 +1,7 @@
-"""All that acts on the rows, compiled: elements, weights, links, loads, dampers, and explicit steps.
+"""All that acts on the rows, compiled: elements, weights, links, loads, and explicit steps.
 
-Every effect has its own table, of length zero where the scene does not name it. The dampers of the strips are
-
-    relaxation           relaxation time of the elements [s]: material tangent times velocity times it
-    drag (nodes,)        drag coefficient of the nodes [N s/m]
+Every effect has its own table, of length zero where the scene does not name it. With a relaxation time [s]
+the elements are viscous: they resist with material tangent times velocity times it.
 """
 
 from .arrays import Array, Indices, inlined, kernel
@@ -11,8 +9,8 @@ from .law import FORCES, MATERIAL, Energies, Given, Written, elements
 from .loads import Histories, Links, Pulls, link_forces, load_power, pull, put_factors
 from .places import Carried, carry, carry_velocity, gather, turned
 
-#: Elements, ends on bodies, weights, links, loads and dampers of a structure.
-Tables = tuple[Given, Carried, Pulls, Links, Pulls, tuple[float, Array]]
+#: Elements, carried rows, weights, links, loads and relaxation time of a structure.
+Tables = tuple[Given, Carried, Pulls, Links, Pulls, float]
 #: Displacements and velocities of all rows.
 State = tuple[Array, Array]
 
@@ -35,13 +33,11 @@ def resist(
         Energies of the strips, of springs and of the full weight [J], work of the loads in full since rest
         [J], and the power that dampers take [W].
     """
-    (given, carried, weights, links, loads, (relaxation, drag)), (u, v), loss = tables, state, 0.0
+    (given, carried, weights, links, loads, relaxation), (u, v), loss = tables, state, 0.0
     bending, axial, shear = elements(given, share, asked, u, written)
     force = written[0]
     if asked == MATERIAL and relaxation > 0.0:
         loss += _viscous_forces(relaxation, given[2], written[2], v, force)
-    if len(drag) > 0:
-        loss += _drag_forces(drag, v, force)
     gravity = -pull(weights, share, u, force)
     rooted, spring, lost = link_forces(links, u, v, force)
     work = pull(loads, acts, u, force)
@@ -61,17 +57,6 @@ def _viscous_forces(relaxation: float, first: Indices, matrices: Array, v: Array
             total *= relaxation
             force[node, part] += total
             power += total * v[node, part]
-    return power
-
-
-@kernel()
-def _drag_forces(drag: Array, v: Array, force: Array) -> float:
-    """Add the drag of the nodes; return the power it takes [W]."""
-    power = 0.0
-    for i in range(len(drag)):
-        for k in range(2):
-            force[i, k] += drag[i] * v[i, k]
-            power += drag[i] * v[i, k] * v[i, k]
     return power
 
 
@@ -132,7 +117,7 @@ def advance(
         time, step: instant and step h [s].
         steps: number of steps.
     """
-    (_, carried, _, _, loads, (relaxation, _)), force, (u, v) = tables, written[0], state
+    (_, carried, _, _, loads, relaxation), force, (u, v) = tables, written[0], state
     asked = MATERIAL if relaxation > 0.0 else FORCES
     for n in range(steps):
         carry_velocity(carried, v)

@@ -288,9 +288,9 @@ def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
             place, on = model.rest[strip, -end], ground if there == GROUND else strips + int(there)
             resisted = 2 if model.strips[strip].hinges[end] else 3
             ties.append((motions(strip, place) - motions(on, place))[:resisted])
-    (roots, rows, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
+    (strip_links, rows, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
     for pair, stiffness in zip(
-        structure.carriers[rows[roots:]] - structure.nodes, stiffnesses[roots:], strict=True
+        structure.carriers[rows[strip_links:]] - structure.nodes, stiffnesses[strip_links:], strict=True
     ):
         one, other = (motions(strips + b, centres[b]) for b in pair)
         ties.append((one - other)[stiffness > 0.0])

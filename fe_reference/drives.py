@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated
 
-import numpy as np
-
 from . import read
 from .arrays import Array, Flags
 from .effects import ALWAYS, ALWAYS_FULL, Prescribed, factor_of
-from .mass import RigidBodies
+from .mass import mass_matrix
 from .model import Model
 from .structure import Structure
 
@@ -100,25 +98,21 @@ class Span:
         """Return which coordinates of a structure are led (size,)."""
         return structure.flags([structure.first_body + at for at in self.rates])
 
-    def caught(self, structure: Structure, bodies: RigidBodies, y: Array, v: Array) -> Array:
+    def caught(self, structure: Structure, y: Array, v: Array) -> Array:
         """Return velocities (size,) with the rates of the drives, all others as impulses of these leave them.
 
-        The mass of a body is off the point that is led: an impulse there turns it.
+        The mass of a body may be off the point that is led: an impulse there turns it.
 
         Args:
             structure: reduced model in whose coordinates the motion is.
-            bodies: lumped masses of its bodies.
             y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] before the impulse.
         """
-        after = v.copy()
+        after, mass = v.copy(), mass_matrix(structure, y, "lumped")
         for at, rate in self.rates.items():
             after[structure.first_body + at] = rate
-        for body in self.led:
-            place, free = structure.body_slice(body), [k for k in range(3) if 3 * body + k not in self.rates]
-            mass = bodies.block(structure, body, y[place][2])[free]
-            impulse = mass @ (after - v)[place]
-            if impulse.any():  # free coordinates take what keeps their momentum
-                after[place][free] -= np.linalg.solve(mass[:, free], impulse)
+        held = self.held(structure) | (mass.data[mass.pattern.diagonal] == 0.0)
+        # free coordinates take what keeps their momentum
+        after -= mass.factors(held).solve(mass.times(after - v))
         return after
 
     def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[tuple[float, float, int, bool]]:

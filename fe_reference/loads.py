@@ -4,10 +4,10 @@ They act on rows, as of `places`. A dead force F has the potential -F.u of the d
 does a moment. A follower R F has no potential: its tangent is the product -R' F (x) 1 of its rate in the turn
 and the turn's unit vector, which is not symmetric.
 
-Links are springs and dampers between two rows: roots that give way, springs of a scene, dampers of bodies.
-With the difference e of displacements and turns a link resists with f = diag(k) e + diag(c) e', in axes of
-the ground. The energy is e.diag(k) e / 2. At the root of a strip it is between the node and what carries it,
-for turns alone.
+Links are springs and dampers between two rows: roots that give way, drag of nodes, springs, dampers. With the
+difference e of displacements and turns a link resists with f = diag(k) e + diag(c) e', in axes of the ground.
+The energy is e.diag(k) e / 2. At the root of a strip it is between the node and what carries it, for turns
+alone.
 """
 
 from collections.abc import Sequence
@@ -151,23 +151,28 @@ class Loads:
         return total
 
 
-#: How many of the links are roots, which come first; rows at both ends (K, 2), stiffness and damping (K, 3)
-#: for x, y and the turn.
+#: How many of the links are of strips, which come first; rows at both ends (K, 2), stiffness and damping
+#: (K, 3) for x, y and the turn.
 Links = tuple[int, Indices, Array, Array]
 Parts = tuple[float, float, float]
 
 
-def links_of(model: Model, soft: Sequence[tuple[int, int, float]], relaxation: float, points: Rows) -> Links:
+def links_of(
+    model: Model, soft: Sequence[tuple[int, int, float]], relaxation: float, drag: Array, points: Rows
+) -> Links:
     """Return the links of a model between its nodes and `points` of its bodies.
 
     soft: of the roots that give way: node, row of what it is on, and stiffness [N m]. relaxation: their time
-    of relaxation [s].
+    of relaxation [s]. drag: of the nodes (nodes,), zero where there is none [N s/m].
     """
     found: list[tuple[float, ...]] = []
     for node, row, stiffness in soft:
         if stiffness > 0.0:  # a hinge has none
             found.append((node, row, 0.0, 0.0, stiffness, 0.0, 0.0, relaxation * stiffness))
-    roots, every = len(found), [(model.body_index(each.body), each) for each in model.every(Spring)]
+    found += [
+        (node, points.ground, *(0.0,) * 3, drag[node], drag[node], 0.0) for node in np.flatnonzero(drag)
+    ]
+    strips, every = len(found), [(model.body_index(each.body), each) for each in model.every(Spring)]
     damper = model.find(BodyDamping)
     if damper is not None and (damper.translation or damper.rotation):
         own = Spring(damping=(damper.translation,) * 2, rotational_damping=damper.rotation)
@@ -179,7 +184,7 @@ def links_of(model: Model, soft: Sequence[tuple[int, int, float]], relaxation: f
         found.append((*rows, *stiff, *spring.damping, spring.rotational_damping))
     table = np.reshape(np.array(found, dtype=np.float64), (-1, 8))
     ends, stiffnesses, viscous = (part.copy() for part in np.split(table, (2, 5), axis=1))
-    return roots, ends.astype(np.int64), stiffnesses, viscous
+    return strips, ends.astype(np.int64), stiffnesses, viscous
 
 
 @kernel()
@@ -192,9 +197,9 @@ def link_forces(links: Links, u: Array, v: Array, force: Array) -> Parts:
         force: generalised forces (rows, 3) [N, N m], added to.
 
     Returns:
-        Energy of the roots and of all other links [J], and the power that is lost [W].
+        Energy of the links of strips and of all others [J], and the power that is lost [W].
     """
-    (roots, ends, stiffness, damping), rooted, energy, loss = links, 0.0, 0.0, 0.0
+    (strips, ends, stiffness, damping), rooted, energy, loss = links, 0.0, 0.0, 0.0
     for k in range(len(ends)):
         i, j = ends[k]
         for p in range(3):
@@ -203,7 +208,7 @@ def link_forces(links: Links, u: Array, v: Array, force: Array) -> Parts:
             force[i, p] += resisting
             force[j, p] -= resisting
             stored = 0.5 * stiffness[k, p] * stretch * stretch
-            if k < roots:
+            if k < strips:
                 rooted += stored
             else:
                 energy += stored
@@ -224,12 +229,12 @@ def link_matrices(constants: Array) -> Array:
 
 
 def fastest(links: Links, constants: Array, light: Array, turning: Array) -> float:
-    """Return what no ratio of constants (K, 3) of links to masses exceeds [1/s^2 or 1/s], roots excluded.
+    """Return what no ratio of constants (K, 3) of links to masses exceeds [1/s^2 or 1/s], strips' excluded.
 
     It is the sum of the largest ratios of each link alone. light, turning (rows,): the inverse of masses and
     of moments of inertia.
     """
-    roots, ends, *_ = links
-    own, pairs = constants[roots:], ends[roots:]
+    strips, ends, *_ = links
+    own, pairs = constants[strips:], ends[strips:]
     along = own[:, :2].max(axis=1, initial=0.0) * light[pairs].sum(axis=1)
     return float(np.sum(along + own[:, 2] * turning[pairs].sum(axis=1)))

@@ -47,11 +47,6 @@ class RigidBodies:
     centre: Array
     moment_of_inertia: Array
 
-    def block(self, structure: Structure, body: int, turn: float) -> Array:
-        """Return the mass matrix (3, 3) of a body in its coordinates where it is turned [rad]."""
-        arm = turned(turn, *(self.centre[body] - structure.points[body]))
-        return _block(self.mass[body], arm, self.moment_of_inertia[body])
-
     def diagonal(self, structure: Structure) -> Array:
         """Return the lumped masses (size,) [kg, kg m^2] of a structure reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
@@ -145,12 +140,6 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
         blocks[:many, :6, :6] = _consistent_elements(structure, y)
     blocks[len(blocks) - len(own) :, range(3), range(3)] = own[:, [0, 0, 1]]
     return structure.reduced_matrix(blocks)
-
-
-def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
-    """Return the mass matrix (3, 3) of a body with its centre of mass at an arm [m] from its point."""
-    x, y = mass * arm[0], mass * arm[1]
-    return np.array([[mass, 0.0, -y], [0.0, mass, x], [-y, x, inertia]])
 
 
 def _consistent_elements(structure: Structure, y: Array) -> Array:

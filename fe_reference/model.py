@@ -12,22 +12,9 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
+from . import effects as scene
 from . import read
 from .arrays import Array, Indices
-from .effects import (
-    CURL,
-    DEFAULT_EFFECTS,
-    SIDES,
-    Effect,
-    Given,
-    Load,
-    Named,
-    Prescribed,
-    PreStrain,
-    Spring,
-    named,
-    twice,
-)
 from .places import FREE, GROUND
 from .read import InvalidParameter
 from .strip import FIXED, StripDesign
@@ -89,7 +76,7 @@ class Model:
     bodies: tuple[BodyDesign, ...] = ()
     element: str = "corotational"
     elements: int = 20
-    effects: Named = field(default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, (Effect(),)))
+    effects: scene.Named = field(default_factory=lambda: scene.named(scene.DEFAULT_EFFECTS, {}))
 
     def __post_init__(self) -> None:
         read.choice("element", self.element, ELEMENTS)
@@ -107,15 +94,15 @@ class Model:
 
     def _check_places(self) -> None:
         """Refuse loads, springs and drives on what is not there."""
-        for load in self.every(Load):
+        for load in self.every(scene.Load):
             if load.strip is None:
                 self.body_index(load.body)
             elif self.ends[self.strip_index(load.strip), 1] != FREE:
                 raise InvalidParameter("tip_force", load.strip, "a strip whose tip is free [name]")
-        for spring in self.every(Spring):
+        for spring in self.every(scene.Spring):
             self.body_index(spring.body)
             self.body_index(spring.other or spring.body)
-        led = self.every(Prescribed)
+        led = self.every(scene.Prescribed)
         if led and not self.bodies:
             name = next(name for name, same in self.effects.items() if led[0] in same)
             raise InvalidParameter(name, "no bodies", "a body to lead [name]")
@@ -124,9 +111,9 @@ class Model:
 
     def _check_sides(self) -> None:
         """Refuse effects of the strips' sides where they do not hold."""
-        named = [name for name in SIDES if name in self.effects]
-        curl = [name for name in CURL if name in named]
-        natural = self.find(PreStrain)
+        named = [name for name in scene.SIDES if name in self.effects]
+        curl = [name for name in scene.CURL if name in named]
+        natural = self.find(scene.PreStrain)
         if curl and natural is not None and natural.curvature:
             raise InvalidParameter(
                 curl[0], "natural curvature", "strips that are straight when free of stress"
@@ -223,11 +210,11 @@ class Model:
             InvalidParameter: a coordinate is prescribed twice, or a name is unknown.
         """
         found: dict[int, tuple[float, Any]] = {}
-        for effect in self.every(Prescribed) if led is None else led:
+        for effect in self.every(scene.Prescribed) if led is None else led:
             index = body if effect.body is None and body is not None else self.body_index(effect.body)
             for at, end in enumerate(effect.ends, start=3 * index):
                 if at in found and end is not None:
-                    raise twice(self.body_names, at)
+                    raise scene.twice(self.body_names, at)
                 if end is not None:
                     found[at] = end, effect
         return found
@@ -247,8 +234,8 @@ def compliant_mechanism(
     *,
     strips: Sequence[StripDesign],
     bodies: Sequence[BodyDesign] = (),
-    effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Given] | None = None,
+    effects: Sequence[str] = scene.DEFAULT_EFFECTS,
+    parameters: Mapping[str, scene.Given] | None = None,
     elements: int = 20,
     element: str = "corotational",
 ) -> Model:
@@ -297,7 +284,7 @@ def compliant_mechanism(
         bodies=tuple(bodies),
         element=element,
         elements=elements,
-        effects=named(effects, parameters or {}),
+        effects=scene.named(effects, parameters or {}),
     )
 
 
@@ -310,8 +297,8 @@ def cross_axis_pivot(
     body_moment_of_inertia: float,
     centre_offset: Sequence[float] = (0.0, 0.0),
     orientation: float = 0.0,
-    effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Given] | None = None,
+    effects: Sequence[str] = scene.DEFAULT_EFFECTS,
+    parameters: Mapping[str, scene.Given] | None = None,
     elements: int = 20,
     element: str = "corotational",
     **section: Any,

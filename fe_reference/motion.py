@@ -15,6 +15,7 @@ from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
 from .mass import about_mass_centre, carried_over
 from .model import Model
+from .places import turned
 from .read import Norms
 from .solution import Answer, Status
 from .structure import structure_of
@@ -136,11 +137,12 @@ class Scheme:
 
     def swing(self, y: Array, v: Array, ways: Flags) -> float:
         """Return the kinetic energy of masses that turn off led points moving in `ways` (size,) [J]."""
-        total = 0.0
-        for body in self.off:
-            at = self.structure.body_slice(body)
-            moved, coupling = np.where(ways, v, 0.0)[at], self.bodies.block(self.structure, body, y[at][2])[2]
-            total += float(v[at][2] * (coupling[:2] @ moved[:2]))
+        total, s, places, rates = 0.0, self.structure, self.structure.bodies(y), self.structure.bodies(v)
+        led = s.bodies(ways)
+        for k in self.off:
+            x, y_arm = turned(places[k, 2], *(self.bodies.centre[k] - s.points[k]))
+            across = x * rates[k, 1] * led[k, 1] - y_arm * rates[k, 0] * led[k, 0]
+            total += float(self.bodies.mass[k] * rates[k, 2] * across)
         return total
 
     def kinetic(self, y: Array, v: Array) -> float:
@@ -216,7 +218,7 @@ class Scheme:
         """
         y, v = carried_over(self.own, y, np.zeros_like(y), self.structure)
         for span in spans:
-            caught = span.caught(self.structure, self.bodies, y, v)
+            caught = span.caught(self.structure, y, v)
             gained = self.kinetic(y, caught) - self.kinetic(y, v)
             # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
             self.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)

@@ -16,7 +16,6 @@ stiffness.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -78,7 +77,7 @@ class Structure:
         damping, drag = model.find(StripDamping), model.find(StripDrag)
         #: relaxation time of the strips [s], and rate of their drag [1/s]
         self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
-        self.basis, self.elements = _strip_basis(model), Elements.of(model)
+        self.basis, self.elements = _strip_basis(model), Elements(model)
         self._number()
         self.length = float(model.lengths.max())
         rigidity = max(strip.flexural_rigidity for strip in model.strips)
@@ -89,10 +88,16 @@ class Structure:
         #: what changes of the coordinates are multiplied with to count in strip lengths and rad
         self.measure = np.where(self.axis == 2, 1.0, 1.0 / self.length)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
-        self.given = self.shear, self.elements.table(), first, CURL_TABLE
-        dampers = self.relaxation, self.drag * self.nodal_masses() if self.drag else np.zeros(0)
-        self.damped = bool(self.relaxation or self.drag or self.links[3].any())
-        self.tables = (self.given, self.carried, self._weight(), self.links, self.loads.pulls, dampers)
+        self.given = self.shear, self.elements.table, first, CURL_TABLE
+        self.damped = bool(self.relaxation or self.links[3].any())
+        self.tables = (
+            self.given,
+            self.carried,
+            self._weight(),
+            self.links,
+            self.loads.pulls,
+            self.relaxation,
+        )
         rows, many = len(self.numbers), len(first)
         viscous = np.zeros((many if self.relaxation else 0, 8, 8))
         #: what a motion writes: forces, ends, matrices and scratch of the elements, and curvature
@@ -108,10 +113,9 @@ class Structure:
         points = Rows(self.nodes, self.points)
         carriers = np.where(ends[soft] >= 0, self.nodes + ends[soft], points.ground)
         roots = list(zip(at_ends[soft], carriers, stiffness[soft], strict=True))
-        self.links, self.loads = (
-            links_of(self.model, roots, self.relaxation, points),
-            Loads.of(self.model, points),
-        )
+        drag = self.drag * self.nodal_masses()
+        self.links = links_of(self.model, roots, self.relaxation, drag, points)
+        self.loads = Loads.of(self.model, points)
         #: rows of the bodies' centres
         self.centres = np.array(
             [points.of(k, place) for k, place in enumerate(self.model.centres)], dtype=int
@@ -282,10 +286,8 @@ class Structure:
 
     def damping_matrix(self, y: Array) -> Symmetric:
         """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""
-        local = self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
-        half = 0.5 * self.drag * self.elements.linear_density * self.elements.length
-        local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]
-        return self.reduced_matrix(np.concatenate([local, link_matrices(self.links[3])]))
+        strips = self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
+        return self.reduced_matrix(np.concatenate([strips, link_matrices(self.links[3])]))
 
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
@@ -317,56 +319,36 @@ def structure_of(model: Model) -> Structure:
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Elements:
-    """Reference geometry and rigidities of the E elements, arrays over the elements.
+    """Reference geometry and rigidities of the E elements of a model, strip by strip.
 
     Attributes:
-        chord: reference chord x2 - x1, (2, E) [m].
-        length: reference length (E,) [m].
+        chord: reference chord x2 - x1, (2, E) [m]. length: reference length (E,) [m].
         axial_rigidity, flexural_rigidity, shear_rigidity: EA [N], EI [N m^2], kGA [N], (E,). Of tapered
-        strips their compliances are the means over the element: end force and end moment lengthen and turn
-        it exactly; all else errs by the second order of its length.
+            strips their compliances are the means over the element: end force and end moment lengthen and
+            turn it exactly; all else errs by the second order of its length.
         linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,), means over the element.
-        natural: strain [1] and curvature [1/m], (2, E).
         plate (E, 2 + 2 TERMS): nu^2 of sections that do not curl freely, else 0; the reach [m] of anticlastic
-        bending; the coefficients of what clamps leave of the curl at two points, as in `law`.
+            bending; the coefficients of what clamps leave of the curl at two points, as in `law`.
+        table (E, 10 + 2 TERMS): rows of `law`, in SI units.
     """
 
-    chord: Array
-    length: Array
-    axial_rigidity: Array
-    flexural_rigidity: Array
-    shear_rigidity: Array
-    linear_density: Array
-    rotary_density: Array
-    natural: Array
-    plate: Array
-
-    @classmethod
-    def of(cls, model: Model) -> "Elements":
-        """Return those of all elements of a model, strip by strip."""
-        chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
+    def __init__(self, model: Model) -> None:
+        self.chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
+        self.length = np.hypot(*self.chord)
         rigid = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
-        own = {name: np.repeat([getattr(s, name) for s in model.strips], model.elements) for name in rigid}
-        if any(strip.tapered for strip in model.strips):
-            for name, growth in zip(rigid, _tapers(model), strict=True):
-                own[name] = own[name] * growth
-        natural = model.find(PreStrain) or PreStrain()
-        return cls(
-            chord=chord,
-            length=np.hypot(*chord),
-            natural=np.tile([[natural.strain], [natural.curvature]], chord.shape[1]),
-            plate=np.vstack([_plate(model, k) for k in range(len(model.strips))]),
-            **own,
+        own = np.repeat(
+            [[getattr(strip, name) for strip in model.strips] for name in rigid], model.elements, axis=1
         )
-
-    def table(self) -> Array:
-        """Return the rows of `law` (E, 10 + 2 TERMS), in SI units."""
-        rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
-        known = np.transpose([*self.chord, self.length, *rigidities, *self.natural])
+        if any(strip.tapered for strip in model.strips):
+            own = own * _tapers(model)
+        self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity = own[:3]
+        self.linear_density, self.rotary_density = own[3:]
+        self.plate = np.vstack([_plate(model, k) for k in range(len(model.strips))])
+        natural = model.find(PreStrain) or PreStrain()
+        known = np.broadcast_arrays(*self.chord, self.length, *own[:3], natural.strain, natural.curvature)
         flat = self.flexural_rigidity[:, None] / (1.0 - self.plate[:, :1])
-        return np.hstack([known, flat, self.plate[:, 1:]])
+        self.table = np.hstack([np.transpose(known), flat, self.plate[:, 1:]])
 
 
 def _tapers(model: Model) -> tuple[Array, ...]:
