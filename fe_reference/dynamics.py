@@ -17,11 +17,11 @@ import numpy as np
 
 from . import read
 from .arrays import Array
-from .drives import DrivenRotation, drive_spans
+from .effects import DrivenRotation
 from .mass import carried_over
 from .model import Model, require_model
 from .modes import first_frequency
-from .motion import Progress, Trajectory, trajectory
+from .motion import Progress, Trajectory, drive_spans, trajectory
 from .places import FREE
 from .read import ConvergenceError, InvalidParameter
 from .schemes import RADIUS, Explicit, Implicit

@@ -93,6 +93,58 @@ class Prescribed(Several):
 
 
 @dataclass(frozen=True, kw_only=True)
+class DrivenRotation(read.Checked):
+    """The rotation of a body prescribed as an angle times the change of a history, from the current rotation.
+
+    A body that is re-clamped loses the velocity that the drive does not have.
+
+    Parameters
+    ----------
+    body : str, default None
+        None: the only one.
+    angle : float, rad
+    history : pairs of s and 1, default ((0, 1),)
+        Times and factors of the angle.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7.
+
+    Examples
+    --------
+    >>> DrivenRotation(angle=0.1, history=((0.0, 1.0), (0.01, 0.0)), held=(0.0, 0.02)).angle
+    0.1
+    """
+
+    body: str | None = None
+    angle: Annotated[float, read.finite, "rad"]
+    history: Annotated[read.History, read.history] = ALWAYS_FULL
+    held: tuple[float, float] = ALWAYS
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        begin, end = self.held
+        read.refuse(not begin < end, "held", self.held, "two instants, the first before the second [s]")
+
+    @property
+    def ends(self) -> tuple[None, None, float]:
+        """The turn [rad] that the body is led to (3,), None where it is free."""
+        return None, None, self.angle
+
+    @property
+    def leads(self) -> read.History:
+        """How it goes on in a motion."""
+        return self.history
+
+
+@dataclass(frozen=True, kw_only=True)
 class Spring(Several):
     """Spring and damper between the centre of a body and that of another, or the ground.
 

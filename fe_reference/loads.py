@@ -169,9 +169,8 @@ def links_of(
     for node, row, stiffness in soft:
         if stiffness > 0.0:  # a hinge has none
             found.append((node, row, 0.0, 0.0, stiffness, 0.0, 0.0, relaxation * stiffness))
-    found += [
-        (node, points.ground, *(0.0,) * 3, drag[node], drag[node], 0.0) for node in np.flatnonzero(drag)
-    ]
+    for node in np.flatnonzero(drag).tolist():
+        found.append((node, points.ground, 0.0, 0.0, 0.0, drag[node], drag[node], 0.0))
     strips, every = len(found), [(model.body_index(each.body), each) for each in model.every(Spring)]
     damper = model.find(BodyDamping)
     if damper is not None and (damper.translation or damper.rotation):

@@ -120,11 +120,11 @@ def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tup
         y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
     """
     y, v = y.copy(), v.copy()
-    for k in range(0 if after is before else len(before.points)):
-        at, offset = before.body_slice(k), after.points[k] - before.points[k]
-        (x_arm, y_arm), way = turned(y[at][2], *offset), swept(y[at][2], *offset)
-        y[at][:2] += way
-        v[at][:2] += -v[at][2] * y_arm, v[at][2] * x_arm
+    offsets = after.points - before.points
+    for place, rate, offset in zip(before.bodies(y), before.bodies(v), offsets, strict=True):
+        x_arm, y_arm = turned(place[2], *offset)
+        place[:2] += swept(place[2], *offset)
+        rate[:2] += -rate[2] * y_arm, rate[2] * x_arm
     return y, v
 
 

@@ -1,24 +1,31 @@
-"""A motion from span to span, whatever the scheme: its samples, where their energy comes from, its report."""
+"""A motion from span to span, whatever the scheme: its samples, where their energy comes from, its report.
+
+Histories are linear between their instants, so that a motion falls into spans on which every led coordinate
+goes at a constant rate. Held like that they need no multiplier: the body is reduced about the point that is
+led (`mass.about_mass_centre`), the led rows have no equation of motion, and what resists them is what the
+drive exerts. At the beginning of a span velocities change at once, by impulses of the drives alone.
+"""
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from .actions import couple, resist
 from .arrays import Array, Flags
-from .drives import Span
+from .effects import DrivenRotation, Prescribed, factor_of
 from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
-from .mass import about_mass_centre, carried_over
+from .mass import about_mass_centre, carried_over, mass_matrix
 from .model import Model
 from .places import turned
 from .read import Norms
 from .solution import Answer, Status
-from .structure import structure_of
+from .structure import Structure, structure_of
 
 Progress = Callable[[int, int], None]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
@@ -30,6 +37,93 @@ FLOOR = 1e-12
 #: Energies of a state and what loads and dampers did until then [J], with their signs in what is conserved.
 ENERGIES = {"kinetic_energy": 1, "strain_energy": 1, "gravity_energy": 1, "work": -1, "dissipated": 1}
 SIGNS = np.array([*ENERGIES.values()])
+#: Instants nearer than this part of the motion are the same.
+SAME = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True)
+class Span:
+    """A part of a motion, `begin` to `end` [s], on which all drives go at constant rates.
+
+    Attributes:
+        rates: of coordinate k of body b, under 3 b + k [m/s, rad/s].
+        begins: whether a drive takes hold at its beginning.
+    """
+
+    begin: float
+    end: float
+    rates: Mapping[int, float]
+    begins: bool
+
+    @property
+    def led(self) -> tuple[int, ...]:
+        """The bodies whose centres are led."""
+        return tuple(sorted({at // 3 for at in self.rates if at % 3 < 2}))
+
+    def held(self, structure: Structure) -> Flags:
+        """Return which coordinates of a structure are led (size,)."""
+        return structure.flags([structure.first_body + at for at in self.rates])
+
+    def caught(self, structure: Structure, y: Array, v: Array) -> Array:
+        """Return velocities (size,) with the rates of the drives, all others as impulses of these leave them.
+
+        The mass of a body may be off the point that is led: an impulse there turns it.
+
+        Args:
+            structure: reduced model in whose coordinates the motion is.
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] before the impulse.
+        """
+        after, mass = v.copy(), mass_matrix(structure, y, "lumped")
+        for at, rate in self.rates.items():
+            after[structure.first_body + at] = rate
+        held = self.held(structure) | (mass.data[mass.pattern.diagonal] == 0.0)
+        # free coordinates take what keeps their momentum
+        after -= mass.factors(held).solve(mass.times(after - v))
+        return after
+
+    def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[tuple[float, float, int, bool]]:
+        """Yield the pieces of a motion whose samples are `chunks` of steps [s] apart.
+
+        Of each piece: begin and step [s], number of steps, and whether a sample is at its end.
+        Chunks within which a span begins or ends are cut there, in whole steps of their own.
+        """
+        close, done = SAME * step * sum(chunks), 0
+        for many in chunks:
+            low, high = step * done, step * (done + many)
+            done += many
+            begin, end = max(low, self.begin), min(high, self.end)
+            if end - begin >= high - low - close:
+                yield low, step, many, True
+            elif end - begin > close:
+                steps = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
+                yield begin, (end - begin) / steps, steps, end >= high - close
+
+
+def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
+    """Return the spans of a motion of `duration` [s], in order; without a drive, one free span.
+
+    Raises:
+        InvalidParameter: two drives of one coordinate.
+    """
+    every = [*model.every(Prescribed), *([drive] if drive else [])]
+    drives = {at: led for at, led in model.prescribed(None, every).items() if led[1].leads}
+    times = {duration}
+    for _, effect in drives.values():
+        times |= {*effect.held, *(time for time, _ in effect.leads)}
+    instants = [0.0]
+    for time in sorted(times):
+        if instants[-1] + SAME * duration < time <= duration:
+            instants.append(time)
+    spans: list[Span] = []
+    for begin, end in pairwise([*instants[:-1], duration]):
+        rates = {
+            at: (factor_of(led.leads, end) - factor_of(led.leads, begin)) / (end - begin) * target
+            for at, (target, led) in drives.items()
+            if led.held[0] < 0.5 * (begin + end) < led.held[1]
+        }
+        before = spans[-1].rates if spans else {}
+        spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))
+    return spans
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,11 +231,11 @@ class Scheme:
 
     def swing(self, y: Array, v: Array, ways: Flags) -> float:
         """Return the kinetic energy of masses that turn off led points moving in `ways` (size,) [J]."""
-        total, s, places, rates = 0.0, self.structure, self.structure.bodies(y), self.structure.bodies(v)
-        led = s.bodies(ways)
+        s, total = self.structure, 0.0
+        places, rates, moved = (s.bodies(each) for each in (y, v, np.where(ways, v, 0.0)))
         for k in self.off:
             x, y_arm = turned(places[k, 2], *(self.bodies.centre[k] - s.points[k]))
-            across = x * rates[k, 1] * led[k, 1] - y_arm * rates[k, 0] * led[k, 0]
+            across = x * moved[k, 1] - y_arm * moved[k, 0]
             total += float(self.bodies.mass[k] * rates[k, 2] * across)
         return total
 

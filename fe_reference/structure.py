@@ -343,7 +343,8 @@ class Elements:
         if any(strip.tapered for strip in model.strips):
             own = own * _tapers(model)
         self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity = own[:3]
-        self.linear_density, self.rotary_density = own[3:]
+        self.linear_density: Array = own[3]
+        self.rotary_density: Array = own[4]
         self.plate = np.vstack([_plate(model, k) for k in range(len(model.strips))])
         natural = model.find(PreStrain) or PreStrain()
         known = np.broadcast_arrays(*self.chord, self.length, *own[:3], natural.strain, natural.curvature)

@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import fe_reference as fe
-from fe_reference.drives import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
+from fe_reference.motion import drive_spans
 from fe_reference.structure import Structure, structure_of
 from tests.fe.scenes import (
     GUIDE,
