@@ -241,38 +241,30 @@ class RootCompliance(Effect):
     root: Annotated[float, _root_length] = MONOLITHIC
 
 
-#: Every effect that these elements can have.
-KNOWN: Mapping[str, type[Effect]] = {
-    "bending": Effect,
-    "stretching": Effect,
-    "strip_inertia": Effect,
-    "section_rotary_inertia": Effect,  # shear-deformable elements have it in any case
-    "body_inertia": Effect,
-    "gravity": Gravity,
-    "strip_damping": StripDamping,
-    "strip_drag": StripDrag,
-    "body_damping": BodyDamping,
-    "applied_force": Load,
-    "applied_moment": Load,
-    "tip_force": Load,
-    "driven_displacement": Prescribed,
-    "driven_rotation": Prescribed,
-    "support": Prescribed,
-    "spring": Spring,
-    "pre_strain": PreStrain,
-    "clamped_width": Effect,
-    "anticlastic": Effect,
-    "root_compliance": RootCompliance,
-    "shear": Effect,  # of shear-deformable elements, which have it in any case
-}
-#: Of effects that share a class: the parameters that are needed, and those that may be given.
-TAKES = {
-    "applied_force": (("force",), ("body", "history", "at", "follower")),
-    "applied_moment": (("moment",), ("body", "history")),
-    "tip_force": (("strip", "force"), ("history", "moment", "follower")),
-    "driven_displacement": (("displacement",), ("body", "history")),
-    "driven_rotation": (("angle",), ("body", "history")),
-    "support": (("fixed",), ("body",)),
+#: Every effect that these elements can have; of those that share a class, the parameters that are needed and
+#: those that may be given.
+KNOWN: Mapping[str, tuple[Any, ...]] = {
+    "bending": (Effect,),
+    "stretching": (Effect,),
+    "strip_inertia": (Effect,),
+    "section_rotary_inertia": (Effect,),  # shear-deformable elements have it in any case
+    "body_inertia": (Effect,),
+    "gravity": (Gravity,),
+    "strip_damping": (StripDamping,),
+    "strip_drag": (StripDrag,),
+    "body_damping": (BodyDamping,),
+    "applied_force": (Load, ("force",), ("body", "history", "at", "follower")),
+    "applied_moment": (Load, ("moment",), ("body", "history")),
+    "tip_force": (Load, ("strip", "force"), ("history", "moment", "follower")),
+    "driven_displacement": (Prescribed, ("displacement",), ("body", "history")),
+    "driven_rotation": (Prescribed, ("angle",), ("body", "history")),
+    "support": (Prescribed, ("fixed",), ("body",)),
+    "spring": (Spring,),
+    "pre_strain": (PreStrain,),
+    "clamped_width": (Effect,),
+    "anticlastic": (Effect,),
+    "root_compliance": (RootCompliance,),
+    "shear": (Effect,),  # of shear-deformable elements, which have it in any case
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 #: Parameters of an effect, or of each one of several.
@@ -316,14 +308,14 @@ def twice(bodies: Sequence[str], at: int) -> InvalidParameter:
 
 def _each(name: str, given: Given) -> Iterable[Effect]:
     """Yield the effects `name`, one for each set of parameters, refused by name if they are not its own."""
-    kind, every = KNOWN[name], [given] if isinstance(given, Mapping) else given
+    (kind, *takes), every = KNOWN[name], [given] if isinstance(given, Mapping) else given
     if every is given and not issubclass(kind, Several):
         raise InvalidParameter(name, given, "the parameters of one effect, which acts once [name]")
     if not every or not all(isinstance(each, Mapping) for each in every):
         raise InvalidParameter(name, given, "parameters, or a sequence of them, one for each [name]")
-    own = fields(kind)
-    needed, others = TAKES.get(name) or ([each.name for each in own if each.default is MISSING], ())
-    known = [*needed, *others] if name in TAKES else [each.name for each in own]
+    own = {each.name: each.default for each in fields(kind)}
+    needed, others = takes or ([key for key in own if own[key] is MISSING], own)
+    known = list(dict.fromkeys([*needed, *others]))
     for parameters in every:
         for key in parameters:
             read.refuse(key not in known, name, key, f"one of {', '.join(known) or 'no parameters'} [name]")

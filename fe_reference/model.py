@@ -279,12 +279,9 @@ def compliant_mechanism(
     >>> compliant_mechanism(strips=[strip], bodies=[tip], elements=8).elements
     8
     """
+    named = scene.named(effects, parameters or {})
     return Model(
-        strips=tuple(strips),
-        bodies=tuple(bodies),
-        element=element,
-        elements=elements,
-        effects=scene.named(effects, parameters or {}),
+        strips=tuple(strips), bodies=tuple(bodies), element=element, elements=elements, effects=named
     )
 
 
@@ -375,11 +372,5 @@ def cross_axis_pivot(
         StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **section)
         for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
     ]
-    return compliant_mechanism(
-        strips=strips,
-        bodies=[body],
-        effects=effects,
-        parameters=parameters,
-        elements=elements,
-        element=element,
-    )
+    given: dict[str, Any] = {"effects": effects, "parameters": parameters}
+    return compliant_mechanism(strips=strips, bodies=[body], elements=elements, element=element, **given)
