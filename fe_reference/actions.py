@@ -117,10 +117,12 @@ def advance(
         time, step: instant and step h [s].
         steps: number of steps.
     """
-    (_, carried, _, _, loads, relaxation), force, (u, v) = tables, written[0], state
+    (_, carried, _, links, loads, relaxation), force, (u, v) = tables, written[0], state
     asked = MATERIAL if relaxation > 0.0 else FORCES
+    rated = relaxation > 0.0 or len(links[1]) + len(loads[0]) > 0  # what depends on velocities
     for n in range(steps):
-        carry_velocity(carried, v)
+        if rated:
+            carry_velocity(carried, v)
         put_factors(histories, time + n * step, loads[2])
         _, _, _, _, loss = resist(tables, 1.0, 1.0, asked, state, written, curvature)
         power = load_power(loads, v)
@@ -132,7 +134,8 @@ def advance(
             for k in range(3):
                 v[i, k] -= step * compliance[i, k] * force[i, k]
                 u[i, k] += step * v[i, k]
-        carry_velocity(carried, v)  # with the arms of the forces
+        if rated:
+            carry_velocity(carried, v)  # with the arms of the forces
         totals[0] += 0.5 * step * (power + load_power(loads, v))
         totals[1] += step * loss
         carry(carried, u)

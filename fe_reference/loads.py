@@ -200,18 +200,18 @@ def link_forces(links: Links, u: Array, v: Array, force: Array) -> Parts:
     """
     (strips, ends, stiffness, damping), rooted, energy, loss = links, 0.0, 0.0, 0.0
     for k in range(len(ends)):
-        i, j = ends[k]
+        i, j, stored = ends[k, 0], ends[k, 1], 0.0
         for p in range(3):
             stretch, rate = u[i, p] - u[j, p], v[i, p] - v[j, p]
             resisting = stiffness[k, p] * stretch + damping[k, p] * rate
             force[i, p] += resisting
             force[j, p] -= resisting
-            stored = 0.5 * stiffness[k, p] * stretch * stretch
-            if k < strips:
-                rooted += stored
-            else:
-                energy += stored
+            stored += 0.5 * stiffness[k, p] * stretch * stretch
             loss += damping[k, p] * rate * rate
+        if k < strips:
+            rooted += stored
+        else:
+            energy += stored
     return rooted, energy, loss
 
 

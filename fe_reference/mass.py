@@ -28,7 +28,7 @@ import numpy as np
 
 from .arrays import Array
 from .matrix import Symmetric
-from .places import swept, turned
+from .places import turned
 from .structure import Structure
 
 MASSES = ("consistent", "lumped")
@@ -123,7 +123,8 @@ def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tup
     offsets = after.points - before.points
     for place, rate, offset in zip(before.bodies(y), before.bodies(v), offsets, strict=True):
         x_arm, y_arm = turned(place[2], *offset)
-        place[:2] += swept(place[2], *offset)
+        way = np.expm1(1j * place[2]) * complex(*offset)
+        place[:2] += way.real, way.imag
         rate[:2] += -rate[2] * y_arm, rate[2] * x_arm
     return y, v
 

@@ -152,7 +152,7 @@ def natural_frequencies(
         kept += [int(structure.turns[at or 0])] if held else []
         values, full = _lowest(structure, y, tangent, ~structure.flags(kept), kind, count)
         count = len(values)  # of finer meshes as many as of the first
-        moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
+        moves = np.array([structure.velocity(mode)[: structure.nodes, :2] for mode in full])
         return Modes(
             rotation=np.nan if rotation is None else float(rotation),
             held=held,

@@ -216,7 +216,7 @@ class Scheme:
             y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
             time: instant [s], which gives the factors of the loads.
         """
-        s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(y, v))
+        s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(v))
         put_factors(s.loads.histories, time, s.loads.pulls[2])
         asked = MATERIAL if s.relaxation else FORCES
         strain, spring, gravity, _, loss = resist(s.tables, 1.0, 1.0, asked, state, s.written, s.curvature)
@@ -232,11 +232,11 @@ class Scheme:
     def swing(self, y: Array, v: Array, ways: Flags) -> float:
         """Return the kinetic energy of masses that turn off led points moving in `ways` (size,) [J]."""
         s, total = self.structure, 0.0
-        places, rates, moved = (s.bodies(each) for each in (y, v, np.where(ways, v, 0.0)))
         for k in self.off:
-            x, y_arm = turned(places[k, 2], *(self.bodies.centre[k] - s.points[k]))
-            across = x * moved[k, 1] - y_arm * moved[k, 0]
-            total += float(self.bodies.mass[k] * rates[k, 2] * across)
+            at = s.body_slice(k)
+            moved, spin = np.where(ways, v, 0.0)[at], v[at][2]
+            x, y_arm = turned(y[at][2], *(self.bodies.centre[k] - s.points[k]))
+            total += float(self.bodies.mass[k] * spin * (x * moved[1] - y_arm * moved[0]))
         return total
 
     def kinetic(self, y: Array, v: Array) -> float:

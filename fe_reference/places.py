@@ -63,18 +63,6 @@ def turned(angle: float, x: float, y: float) -> tuple[float, float]:
 
 
 @kernel()
-def swept(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return (R - 1) (x, y), written with sines: no cancellation at small turns.
-
-    Args:
-        angle: turn of the matrix R [rad].
-        x, y: components, of any unit.
-    """
-    sine, less = math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
-    return -less * x - sine * y, sine * x - less * y
-
-
-@kernel()
 def carry(carried: Carried, u: Array) -> None:
     """Move the carried rows with their bodies, exact rigid motion, and write their arms.
 
@@ -82,10 +70,13 @@ def carry(carried: Carried, u: Array) -> None:
         carried: K rows, their carriers and offsets, and the arms.
         u: displacements of all rows (rows, 3) [m, rad]; those of carried rows are overwritten.
     """
-    rows, carrier, offsets, rigid, arms = carried
+    (rows, carrier, offsets, rigid, arms), last, sine, less = carried, -1, 0.0, 0.0
     for k in range(len(rows)):
         i, b = rows[k], carrier[k]
-        x, y = swept(u[b, 2], offsets[k, 0], offsets[k, 1])
+        if b != last:  # R - 1 written with sines: no cancellation at small turns
+            sine, less, last = math.sin(u[b, 2]), 2.0 * math.sin(0.5 * u[b, 2]) ** 2, b
+        x = -less * offsets[k, 0] - sine * offsets[k, 1]
+        y = sine * offsets[k, 0] - less * offsets[k, 1]
         arms[k, 0], arms[k, 1] = offsets[k, 0] + x, offsets[k, 1] + y
         u[i, 0], u[i, 1] = u[b, 0] + x, u[b, 1] + y
         if rigid[k]:

@@ -66,15 +66,10 @@ def _stiffness_between(
     Nodes move far where elements strain little: the tangent times the rate loses the digits by which EA l^2
     exceeds EI. What is `left` to equilibrium (size,) takes the round-off of places out of the forces.
     """
-    u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
-    written, (_, ends, constants, _) = (
-        (structure.written[0], at.ends, at.matrices, structure.written[3]),
-        structure.links,
-    )
+    u, (v, w, rest) = structure.displacement(y), (structure.velocity(rate) for rate in (one, other, left))
+    written = (structure.written[0], at.ends, at.matrices, structure.written[3])
     own = float(_between(structure.tables, u, v, w, rest, written))
-    own += at.tangent.apart(one, other) + float(at.curvature @ (v[:, 2] * w[:, 2]))
-    linked = (np.subtract(*each[ends.T]) for each in (v, w))
-    return own + float(np.sum(constants * np.prod([*linked], axis=0)))
+    return own + at.tangent.apart(one, other) + float(at.curvature @ (v[:, 2] * w[:, 2]))
 
 
 @kernel()
@@ -88,7 +83,7 @@ def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
 
 @kernel()
 def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
-    """Return the same of the elements, and what the forces on carried nodes change with the rest.
+    """Return the same of elements and links, and what the forces on carried nodes change with the rest.
 
     Of what is written forces are scratch.
 
@@ -98,6 +93,7 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
     (_, table, first, _), (rows, carrier, _, _, arms) = tables[0], tables[1]
+    _, pairs, constants, _ = tables[3]
     (force, ends, matrices, _), total = written, 0.0
     force[:] = 0.0
     for e in range(len(first)):
@@ -120,6 +116,10 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
     for k in range(len(rows)):
         i, b = rows[k], carrier[k]
         total -= one[b, 2] * other[b, 2] * (arms[k, 0] * force[i, 0] + arms[k, 1] * force[i, 1])
+    for k in range(len(pairs)):
+        i, j = pairs[k, 0], pairs[k, 1]
+        for p in range(3):
+            total += constants[k, p] * (one[i, p] - one[j, p]) * (other[i, p] - other[j, p])
     return total
 
 

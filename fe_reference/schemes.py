@@ -122,7 +122,7 @@ class Explicit(Scheme):
         """Return the instant after steps of h [s]."""
         s, totals = self.structure, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
-        state = s.displacement(now.y), s.velocity(now.y, late)
+        state = s.displacement(now.y), s.velocity(late)
         acting = s.tables, s.written, s.curvature, s.loads.histories
         drives = self.coupled, s.coordinates[self.held], s.spread(self.inverse)
         advance(*acting, *drives, state, totals, now.time, h, steps)

@@ -141,11 +141,12 @@ class Structure:
         #: pairs of rows with a matrix between them: of elements, links, and of bodies with the ground
         fixed = np.full(len(self.centres), points.ground)
         self.pairs = np.vstack([self.basis.mesh.t.T, self.links[1], np.stack([self.centres, fixed], axis=1)])
+        self.ends = self.places[self.pairs]
 
     @cached_property
     def pattern(self) -> Envelope:
         """Where the entries of matrices in the reduced coordinates lie."""
-        turns = np.where(self.places[self.pairs] >= 0, self.numbers[self.carriers[self.pairs], 2], -1)
+        turns = np.where(self.ends >= 0, self.numbers[self.carriers[self.pairs], 2], -1)
         return Envelope(np.hstack([self.numbers[self.pairs].reshape(-1, 6), turns]), self.size)
 
     def bodies(self, y: Array) -> Array:
@@ -221,10 +222,12 @@ class Structure:
         carry(self.carried, full)
         return full
 
-    def velocity(self, y: Array, v: Array) -> Array:
-        """Return the rates of displacement and turn of all rows, (rows, 3) [m/s, rad/s]."""
+    def velocity(self, v: Array) -> Array:
+        """Return the rates of displacement and turn of all rows, (rows, 3) [m/s, rad/s].
+
+        The arms are those of the displacements that were evaluated last.
+        """
         full = self.spread(v)
-        self.displacement(y)  # for the arms
         carry_velocity(self.carried, full)
         return full
 
@@ -251,7 +254,8 @@ class Structure:
         found = resist(self.tables, share, acts, asked, (u, self._still), written, curvature)
         strain, spring, gravity, work, _ = found
         if asked == TANGENT:
-            matrices = np.concatenate([matrices, link_matrices(self.links[2])])
+            if len(self.links[1]):
+                matrices = np.concatenate([matrices, link_matrices(self.links[2])])
             tangent = self.reduced_matrix(matrices)
             tangent.data[self.pattern.diagonal[self.turns]] += self.of_bodies(curvature)
             if load is not None and self.loads.follows:
@@ -281,7 +285,7 @@ class Structure:
             matrices: of stiffness, damping or mass. See `assemble`.
         """
         whole = self.pattern.zero()
-        assemble(matrices, self.places[self.pairs], self.carried, self.pattern.places, whole.data)
+        assemble(matrices, self.ends, self.carried, self.pattern.places, whole.data)
         return whole
 
     def damping_matrix(self, y: Array) -> Symmetric:
