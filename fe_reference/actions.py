@@ -134,7 +134,7 @@ def advance(
             for k in range(3):
                 v[i, k] -= step * compliance[i, k] * force[i, k]
                 u[i, k] += step * v[i, k]
-        if rated:
+        if len(loads[0]) > 0:
             carry_velocity(carried, v)  # with the arms of the forces
         totals[0] += 0.5 * step * (power + load_power(loads, v))
         totals[1] += step * loss
