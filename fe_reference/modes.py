@@ -10,12 +10,12 @@ from scipy.sparse.linalg import eigsh, splu
 from . import read
 from .arrays import Array, Flags
 from .control import NothingHolds, loose_coordinates
-from .effects import DEFAULT_EFFECTS, Effects
-from .errors import ConvergenceError, InvalidParameter
+from .effects import DEFAULT_EFFECTS
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
 from .places import GROUND
+from .read import ConvergenceError, InvalidParameter
 from .refined import Quantities, missed, refine
 from .solution import ErrorEstimate
 from .statics import settled_state
@@ -131,12 +131,11 @@ def natural_frequencies(
     """
     require_model(pivot)
     kind = read.choice("mass", mass, MASSES)
-    pivot.effects.require_inertia()
+    pivot.require_inertia()
     if structure_of(pivot).loads.follows:
         expected = "a fixed direction for modes, as flutter is not modelled; `release` follows it [1]"
         raise InvalidParameter("follower", True, expected)
-    if rotation is None and held:
-        raise InvalidParameter("held", held, "a driven rotation to hold [1]")
+    read.refuse(rotation is None and held, "held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
         nonlocal count
@@ -149,11 +148,11 @@ def natural_frequencies(
         tangent = structure.evaluate(y, load=structure.loads.factors(time)).tangent
         at = None if body is None else model.body_index(body)
         # what a release keeps: what is led on, and a held turn
-        kept = [structure.first_body + k for k, (_, history) in model.prescribed(at).items() if history]
+        kept = [structure.first_body + k for k, (_, led) in model.prescribed(at).items() if led.leads]
         kept += [int(structure.turns[at or 0])] if held else []
         values, full = _lowest(structure, y, tangent, ~structure.flags(kept), kind, count)
         count = len(values)  # of finer meshes as many as of the first
-        moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
+        moves = np.array([structure.velocity(mode)[: structure.nodes, :2] for mode in full])
         return Modes(
             rotation=np.nan if rotation is None else float(rotation),
             held=held,
@@ -175,8 +174,8 @@ def natural_frequencies(
 
 def first_frequency(model: Model) -> float:
     """Return the first frequency about the shape at rest, of inertia, elasticity and supports alone [Hz]."""
-    kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
-    bare = replace(model, effects=Effects(named=kept))
+    kept = {name: same for name, same in model.effects.items() if name in ELASTIC}
+    bare = replace(model, effects=kept)
     structure = structure_of(bare)
     rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
     clamped = (model.ends == GROUND).any()
@@ -258,6 +257,5 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
 
 def _available(wanted: int, available: int) -> int:
     """Return the wanted number of modes, or as many as there are; refuse a mesh without one."""
-    if not available:
-        raise InvalidParameter("count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
+    read.refuse(not available, "count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
     return min(read.count("count", wanted), available)

@@ -12,10 +12,10 @@ import numpy as np
 
 from .arrays import Array, Indices
 from .effects import PreStrain
-from .errors import ConvergenceError, InvalidParameter, Norms
 from .law import FORCES
 from .model import Model, require_model
 from .places import FREE
+from .read import ConvergenceError, InvalidParameter, Norms
 from .response import CriticalPoint, body_stiffness
 from .structure import structure_of
 
@@ -403,7 +403,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     angle = _midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
     axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
-    natural, length = model.effects.find(PreStrain) or PreStrain(), structure.elements.length.reshape(rows)
+    natural, length = model.find(PreStrain) or PreStrain(), structure.elements.length.reshape(rows)
     (area, inertia), modulus = _sections(model), [[strip.youngs_modulus] for strip in model.strips]
     bent = moment / (modulus * inertia)
     if structure.elements.plate[:, 0].any():  # where it is no multiple of the moment

@@ -149,7 +149,7 @@ def settled_state(
     histories begin; then rigid motions that nothing resists are held until then, whatever it takes. Errors as
     above.
     """
-    structure, moved = structure_of(model), any(any(led.ends) for led in model.effects.every(Prescribed))
+    structure, moved = structure_of(model), any(any(led.ends) for led in model.every(Prescribed))
     ends = None if rotation is None else [read.finite("rotation", rotation, "rad")]
     if not rotation and structure.loads.factors() is None and not moved and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
@@ -181,13 +181,13 @@ def _solved(
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
     steps, structure = read.count("increments", increments), structure_of(model)
-    driven = rotations is not None or any(each.body is None for each in model.effects.every(Prescribed))
+    driven = rotations is not None or any(each.body is None for each in model.every(Prescribed))
     which = model.body_index(body) if driven or body is not None else None
     first = read.choice("order", order, ORDERS) == LOADS_FIRST
     controls = spans(structure, which, rotations, first=first, starts=starts)
     path = follow(controls, steps, progress)
     for state in () if starts else reversed(path.states):  # the load in full is named
-        require_balance(path.control, state.residual)
+        require_balance(path.control, state.at.gradient)
     shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
     driven_body = None if which is None else model.body_names[which]
     return _packed(path, np.array([0.0, *shares]), driven_body, rotations is not None)

@@ -159,7 +159,7 @@ def _led_on(path: Path, load: Array) -> tuple[Path, Array]:
     factor of its states and the rate of that in its parameter, (2, S).
     """
     at = int(np.abs(load).argmax())
-    held, last = np.append(path.control.held, at), path.last
+    held, last = np.append(path.control.held, at), path.trail[-1]
     ends = last.y[held] + np.outer((0.0, 1.0), np.where(held == at, STEPS * PART * last.y[at], 0.0))
     on = Path(control=path.control)
     on.begin(replace(path.control, held=held, values=ends, load=None), last.y)

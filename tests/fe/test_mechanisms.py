@@ -206,6 +206,26 @@ def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
     assert paths[0][1].load_factor == pytest.approx(paths[1][1].load_factor, rel=1e-9)
 
 
+@pytest.mark.parametrize("aside", [1e-10, 1e-9])
+def test_a_column_that_is_hardly_pushed_aside_bifurcates(aside: float) -> None:
+    """Requirement: a path that cannot follow an imperfection around the Euler load ends in a bifurcation."""
+    length, load = 0.1, 10.0
+    column = {"start": (0.0, 0.0), "end": (length, 0.0), "tip": "body", "width": 0.01, "thickness": 5e-4}
+    metal = {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 7850.0}
+    strip, push = fe.StripDesign(name="column", **column, **metal), {"force": (-load, aside * load)}
+    model = fe.compliant_mechanism(
+        strips=[strip],
+        bodies=[fe.BodyDesign(centre=(length, 0.0))],
+        effects=("bending", "stretching", "applied_force"),
+        parameters={"applied_force": push},
+    )
+    answer = fe.solve_mechanism(model, increments=10, raise_on_failure=False)
+    (point,) = answer.critical_points
+    euler = np.pi**2 * strip.flexural_rigidity / (4.0 * length**2)
+    assert (point.kind, point.inertia) == ("bifurcation", 1)
+    assert point.load_factor * load == pytest.approx(euler, rel=1e-3)
+
+
 def test_a_pressed_pivot_says_what_buckles() -> None:
     """A free pivot tips first and its strips buckle later."""
     answer = fe.solve_mechanism(pressed(elements=8), increments=4, check=False)

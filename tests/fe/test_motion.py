@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import fe_reference as fe
-from fe_reference.drives import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
+from fe_reference.motion import drive_spans
 from fe_reference.structure import Structure, structure_of
 from tests.fe.scenes import (
     GUIDE,
@@ -189,10 +189,10 @@ def test_a_catch_gives_momentum_to_what_is_led_alone(
     """Requirement: impulses act on led coordinates alone, though a body's mass is off the led point."""
     model = led_off_its_mass(way)
     (span, *_), own = drive_spans(model, drive, 1e-3), structure_of(model)
-    structure, bodies = about_mass_centre(own, span.led)
+    structure, _ = about_mass_centre(own, span.led)
     y, v = 1e-2 * np.random.default_rng(5).standard_normal((2, structure.size))
     y[structure.turns] = 1.1
-    change = span.caught(structure, bodies, y, v) - v
+    change = span.caught(structure, y, v) - v
     momentum = mass_matrix(structure, y, "lumped").sparse() @ change
     held = span.held(structure)
     assert np.abs(momentum[held]).min() > 1e-3 * np.abs(momentum).max()
