@@ -227,17 +227,6 @@ def _require_parameters(where: str, effects: Effects) -> None:
                 raise document.missing(where, key, key.section)
 
 
-def refuse_unknown_sides(where: str, effects: Effects, strips: Sequence[Any]) -> None:
-    """Raise CaseError that names the keys to give if an effect of the sides meets a strip without them."""
-    named = [name for name in effects.names if name in OF_SIDES]
-    for strip in strips if named else ():
-        if strip.width is None:
-            got = f"{where}: {strip.name}: got no sides for {' and '.join(named)}"
-            raise CaseError(
-                f"{got}, expected width_m and thickness_m in place of area_m2 and second_moment_m4"
-            )
-
-
 def _registered() -> Mapping[str, Any]:
     """Return the effects that the spline model knows; asked for names that this file does not."""
     registry: Mapping[str, Any] = import_module("spline_model.effects.registry").REGISTRY

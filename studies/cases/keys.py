@@ -26,7 +26,11 @@ INCREMENTS = rules.whole(1, 100_000)
 POISSON = rules.number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, closed="high")
 RATIO = rules.number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
 NAME, PLACE = text("a name"), text(f"{GROUND} or the name of a body")
-TIP = text(f"{PLACE.expected}, or {FREE}")
+TIP = replace(
+    text(f"{PLACE.expected}, or {FREE}"),
+    read=lambda place: None if place == FREE else place,
+    in_file=lambda place: place or FREE,
+)
 CLAMP, HINGE = "clamp", "hinge"
 JOINT = choice(CLAMP, HINGE)
 

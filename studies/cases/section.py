@@ -28,8 +28,9 @@ class Sectioned:
     """Section and material of strips.
 
     Args:
-        area, second_moment_of_area: A [m^2] and I [m^4] of the section, at the start of a strip.
-        width, thickness: of a rectangular section with that A and I [m]; None where only these are known.
+        area, second_moment_of_area: A [m^2] and I [m^4] of the section, at the start of a strip; those of the
+            sides, whatever is given, where these are known.
+        width, thickness: of a rectangular section [m]; None where only A and I are known.
         width_end, thickness_end: of a tapered one, at the end [m]; None of a constant one.
         outer_fibre: distance of the outermost fibre from the neutral axis [m]; None of a rectangle, and where
             it is not known.
@@ -37,8 +38,8 @@ class Sectioned:
         yield_strength: that stresses must stay below [Pa]; None where none is known.
     """
 
-    area: float
-    second_moment_of_area: float
+    area: float = math.nan
+    second_moment_of_area: float = math.nan
     width: float | None = None
     thickness: float | None = None
     width_end: float | None = None
@@ -48,6 +49,11 @@ class Sectioned:
     poisson_ratio: float
     density: float
     yield_strength: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.width is not None and self.thickness is not None:
+            for name, value in of_sides(self.width, self.thickness).items():
+                object.__setattr__(self, name, value)
 
     @property
     def depth(self) -> float:
@@ -124,8 +130,6 @@ def completed(
             missing = f" there nor in [{key.section}]" if shared else ""
             expected = f"{key.rule.expected}{named_one}"
             raise CaseError(f"{where}: {label}.{key.name}: got no such key{missing}, expected {expected}")
-    if pair is SIDES:
-        values |= of_sides(values["width"], values["thickness"])
     return values
 
 

@@ -40,11 +40,10 @@ from studies.answers.reference import NoReference
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.answers.validity import validity
-from studies.cases.design import as_toml, design_of
+from studies.cases.design import Design, as_toml, design_of
 from studies.cases.document import parsed
 from studies.cases.effects import OF_SIDES
 from studies.cases.keys import LOADS_FIRST
-from studies.cases.problem import Problem
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import by_row, numbers, plain, table
@@ -124,7 +123,7 @@ def _question(arguments: argparse.Namespace) -> Question:
         drive = content.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
         content = content | {"drive": drive}
     start = design_of(where, content)
-    if isinstance(start, Problem):
+    if start.crossing_point is not None:
         _require_sizable(where, start)
     elif not arguments.free:
         raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
@@ -141,13 +140,13 @@ def _question(arguments: argparse.Namespace) -> Question:
     return task
 
 
-def _require_sizable(where: str, start: Problem) -> None:
+def _require_sizable(where: str, start: Design) -> None:
     """Raise BadInput for a pivot of which no range can be sized."""
-    effects, order = set(start.effects.names), start.order
+    effects, order, fibre = set(start.effects.names), start.order, start.strips[0].outer_fibre
     late = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
     for wrong, got, expected in (
         (not start.rotation, "drive.rotation_deg: got 0", "a range to size for"),
-        (start.outer_fibre, f"strip.outer_fibre_m: got {start.outer_fibre}", "none: sides of a rectangle"),
+        (fibre, f"strip.outer_fibre_m: got {fibre}", "none: sides of a rectangle"),
         ("driven_displacement" in effects, "scene.effects: got driven_displacement", "a body free to shift"),
         (effects - evaluate.PLAIN and order != LOADS_FIRST, f'drive.order: got "{order}"', late),
     ):
@@ -249,7 +248,7 @@ def _said(asked: Question) -> tuple[str, str]:
     least = f"least {asked.objective.replace('-', ' ')}"
     if rotation is not None:
         degrees = math.degrees(rotation)
-        both = isinstance(asked.start, Problem)
+        both = asked.start.crossing_point is not None
         least += f" over +-{abs(degrees):.4g} deg" if both else f" over {degrees:.4g} deg"
     if loads := [name for name in names if name not in evaluate.PLAIN]:
         least += f" under {', '.join(loads)}"

@@ -37,7 +37,7 @@ def _sides_of(design: Design) -> list[Design]:
     """Return the designs of the rotations that a range takes: both of a pivot under loads, else one."""
     if design.crossing_point is None or set(design.effects.names) <= PLAIN:
         return [design]
-    return [design, replace(design, rotation=-design.rotation)]
+    return [design, replace(design, rotation=-(design.rotation or 0.0))]
 
 
 def _held_states(design: Design) -> list[int]:
