@@ -23,13 +23,31 @@ from studies.cases.keys import EFFECT_KEYS, GROUND, MOMENTS
 from studies.cases.mechanism import Body, Mechanism, Point, Problem, Strip
 from studies.cases.rules import FREE, Key
 from studies.cases.section import completed, inherited, refuse_both, renamed
+from studies.errors import BadInput
 
-#: Where the cases of the suite are.
+#: Where the cases of the suite are, and their names.
 FOLDER = Path(__file__).parent
+SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 #: Significant digits of a number that is made in the file's unit.
 DIGITS = 15
 
 Design = Mechanism
+
+
+def case_file(name: str, folder: Path = Path()) -> str:
+    """Return the file of a case: a path from `folder`, or one of the suite by its name.
+
+    Raises:
+        BadInput: neither; what was got and expected.
+    """
+    path, shipped = folder / name, name in SHIPPED
+    if name.endswith(".toml") or path.is_file() or (path.exists() and not shipped):
+        return str(path)
+    if shipped:
+        return str(FOLDER / f"{name}.toml")
+    own = f"{name}.toml"
+    expected = f"{nearest(name, SHIPPED)}, or a file that ends in .toml"
+    raise BadInput(f"got {name}, expected {own if (folder / own).is_file() else expected}")
 
 
 def read_design(path: str | Path, *, changes: str | None = None) -> Design:
@@ -187,11 +205,9 @@ def document_of(design: Design) -> dict[str, Any]:
     }
     found["scene"] = {"effects": list(design.effects.names)}
     found["points"] = [_table(keys.POINT, point) for point in design.points]
-    effects: dict[str, Any] = {}
-    for name in design.effects.tables:
-        every = [dict(_parameters(name, own)) for own in design.effects.every(name)]
-        effects[name] = every if len(every) > 1 else every[0]
-    return {name: own for name, own in found.items() if own} | ({"effects": effects} if effects else {})
+    written = design.effects.each(lambda name, own: dict(_parameters(name, own))).tables
+    found["effects"] = {n: list(own) if isinstance(own, tuple) else own for n, own in written.items()}
+    return {name: own for name, own in found.items() if own}
 
 
 def _table(rows: Iterable[Key], part: Any) -> dict[str, Any]:

@@ -5,7 +5,7 @@ A table `[effects.NAME]` gives the parameters of an effect that the scene names,
 forgotten.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
@@ -75,22 +75,26 @@ class Effects:
     def parameters(self) -> dict[str, Any]:
         """Return the parameters of the named effects in SI units, with the defaults."""
         every = {
-            name: tuple(STANDARD.get(name, {}) | dict(own) for own in self.every(name)) for name in self.names
+            name: [STANDARD.get(name, {}) | dict(own) for own in self.every(name)] for name in self.names
         }
-        return {name: own if len(own) > 1 else own[0] for name, own in every.items() if any(own)}
+        return {name: alone(own) for name, own in every.items() if any(own)}
 
     def grown(self, factor: float, more: Mapping[str, tuple[str, ...]] | None = None) -> "Effects":
         """Return the effects with all loads and drives, and `more` parameters by effect, times a factor
         [1]."""
-        growing, tables = GROWING | dict(more or {}), {}
-        for name in self.tables:
+        growing = GROWING | dict(more or {})
+
+        def grow(name: str, own: Table) -> Table:
             keys = growing.get(name, ())
-            every = [
-                {key: _times(value, factor) if key in keys else value for key, value in own.items()}
-                for own in self.every(name)
-            ]
-            tables[name] = tuple(every) if len(every) > 1 else every[0]
-        return replace(self, tables=tables)
+            return {key: _times(value, factor) if key in keys else value for key, value in own.items()}
+
+        return self.each(grow)
+
+    def each(self, change: Callable[[str, Table], Table]) -> "Effects":
+        """Return the effects with other parameters of every instance, by a function of its name and
+        parameters."""
+        every = {name: [change(name, own) for own in self.every(name)] for name in self.tables}
+        return replace(self, tables={name: alone(own) for name, own in every.items()})
 
     def renamed(self, names: Sequence[str]) -> "Effects":
         """Return the effects with other names and the same tables."""
@@ -114,6 +118,11 @@ class Effects:
         scene = self.renamed(_names_after("--effects", words, self.names))
         _require_parameters("--effects", scene)
         return scene
+
+
+def alone(every: Sequence[Table]) -> Any:
+    """Return the parameters of the instances of an effect: a table for each of several, or the only one."""
+    return tuple(every) if len(every) > 1 else every[0]
 
 
 def _names_after(where: str, words: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
@@ -158,7 +167,7 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     names = _names_after(f"{path}: scene.effects", words, DEFAULT)
     effects = Effects(
         names=tuple(dict.fromkeys((*names, *listed))),
-        tables={name: own if len(own) > 1 else own[0] for name, own in tables.items()},
+        tables={name: alone(own) for name, own in tables.items()},
     )
     _require_parameters(path, effects)
     changed = effects if changes is None else effects.changed(changes)

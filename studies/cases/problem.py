@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from studies.cases.design import FOLDER, read_design
+from studies.cases.design import FOLDER, case_file, read_design
 from studies.cases.document import CaseError
 from studies.cases.mechanism import STRIPS, Problem
 
@@ -15,8 +15,7 @@ TABLE_1 = "cross_axis_pivot"
 def named_case(case: str | Path = TABLE_1) -> Problem:
     """Return the pivot of that name in the suite (default: the benchmark pivot), or of a file; CaseError as
     of `read_design`."""
-    own = FOLDER / f"{case}.toml"
-    path = own if own.is_file() else Path(case)
+    path = case_file(str(case))
     found = read_design(path)
     if not isinstance(found, Problem):
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")

@@ -11,7 +11,7 @@ from spline_model.modes import natural_frequencies
 from studies.answers.critical import critical_load
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
-from studies.cases.design import Design, as_toml, design_of, document_of
+from studies.cases.design import SHIPPED, Design, as_toml, design_of, document_of
 from studies.cases.document import parsed
 from studies.cases.effects import DEFAULT
 from studies.cases.keys import GROUND, HINGE, MATERIALS
@@ -252,7 +252,6 @@ FIRST: dict[str, tuple[str, str, str, Values]] = {
 PRESETS = {
     name: opened(name, parsed(FOLDER / f"{case}.toml"), known) for name, (*_, case, known) in FIRST.items()
 }
-SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
 def own(case: Path) -> Piece:
