@@ -76,11 +76,9 @@ def design_of(where: str, document: Mapping[str, Any], changes: str | None = Non
 
 def _pivot(where: str, document: Mapping[str, Any]) -> Problem:
     """Return the pivot of a case file, without its effects and points."""
-    sections = list(dict.fromkeys(key.section for key in keys.KEYS))
-    refuse_sections(where, document, [*sections, "scene", "effects", *keys.LISTS, "points"])
+    refuse_sections(where, document, [*keys.PIVOT, *keys.ANY])
     found: dict[str, Any] = {}
-    for section in sections:
-        own = [key for key in keys.KEYS if key.section == section]
+    for section, own in keys.PIVOT.items():
         if section not in document:
             needed = ", ".join(key.name for key in [key for key in own if not key.optional] or own)
             raise CaseError(f"{where}: [{section}]: got no such section, expected one with {needed}")
@@ -90,7 +88,7 @@ def _pivot(where: str, document: Mapping[str, Any]) -> Problem:
 
 def _mechanism(where: str, document: Mapping[str, Any]) -> Mechanism:
     """Return the mechanism of a case file, without its effects and points."""
-    refuse_sections(where, document, keys.SECTIONS)
+    refuse_sections(where, document, [*keys.MECHANISM, *keys.ANY])
     shared = {
         **values(where, keys.SECTION, renamed(where, table(where, document, "section")), "section"),
         **values(where, keys.MATERIAL, table(where, document, "material"), "material"),

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from studies.cases.document import CaseError
 from studies.cases.effects import OF_SIDES, Effects
-from studies.cases.keys import BODY, CLAMP, DRIVE, GROUND, KEYS, LOADS_FIRST, OWN, STRIP
+from studies.cases.keys import BODY, CLAMP, DRIVE, GROUND, LOADS_FIRST, OWN, PIVOT, STRIP
 from studies.cases.rules import Key
 from studies.cases.section import Sectioned, out_of_scale, too_heavy
 
@@ -207,8 +207,7 @@ class Problem(Sectioned, Mechanism):
     @property
     def tables(self) -> Mapping[str, tuple[tuple[Key, ...], Any]]:
         """As of any mechanism: those of the short form."""
-        sections = dict.fromkeys(key.section for key in KEYS)
-        return {name: (tuple(key for key in KEYS if key.section == name), self) for name in sections}
+        return {name: (rows, self) for name, rows in PIVOT.items()}
 
     def changed(self, strip: Callable[[Strip], Mapping[str, Any]], **body: Any) -> Self:
         """As of any mechanism: what both strips and the body have is changed in the short form."""

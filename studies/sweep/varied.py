@@ -70,7 +70,7 @@ def _keys(where: str, document: Mapping[str, Any]) -> Iterator[tuple[str, Key]]:
             if key.rule.kind != "text":
                 yield table, key
     else:
-        yield from ((key.section, key) for key in keys.KEYS)
+        yield from ((key.section, key) for rows in keys.PIVOT.values() for key in rows)
     yield from ((key.section, key) for rows in keys.EFFECT_KEYS.values() for key in rows)
     for section, listed in keys.LISTS.items():
         for place, _ in enumerate(tables(where, document, section), start=1):
