@@ -5,7 +5,7 @@ A cross-axis pivot is a design that its short form makes: two strips and a body 
 
 import cmath
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Self
 
@@ -13,10 +13,12 @@ from studies.cases.document import CaseError
 from studies.cases.effects import OF_SIDES, Effects
 from studies.cases.keys import BODY, CLAMP, DRIVE, GROUND, LOADS_FIRST, OWN, PIVOT, STRIP
 from studies.cases.rules import Key
-from studies.cases.section import Sectioned, out_of_scale, too_heavy
+from studies.cases.section import Sectioned
 
 #: Sine of the angle between strips below which they do not cross.
 PARALLEL = 1e-9
+#: Numbers that double precision bears: stiffness [N], mass per length [kg/m] or of a body; slenderness [1].
+SCALES, MASSES, SLENDERNESS = (1e-60, 1e60), (0.0, 1e60), (0.1, 1e10)
 #: What only answers ask for.
 _BESIDE = ("outer_fibre", "yield_strength")
 #: What strips and body of a pivot are called.
@@ -48,6 +50,16 @@ class Strip(Sectioned):
         half = 2.0 * math.atan2(2.0 * abs(self.rise), chord)
         return chord * half / math.sin(half) if self.rise else chord
 
+    def scales(self) -> Iterator[tuple[str, float, tuple[float, float]]]:
+        """Yield numbers at both ends that must be solvable: name, value, and least and largest value."""
+        for b, t in (self.growth(0.0), self.growth(1.0)):
+            area, inertia = self.area * b * t, self.second_moment_of_area * b * t * t * t
+            bluntness = math.sqrt(area / inertia) if inertia > 0.0 else math.inf
+            yield "stiffness EA [N]", self.youngs_modulus * area, SCALES
+            yield "slenderness L sqrt(A/I) [1]", self.length * bluntness, SLENDERNESS
+            yield "stiffness EI/L^2 [N]", self.youngs_modulus * inertia / self.length / self.length, SCALES
+            yield "mass per length [kg/m]", self.density * area, SCALES
+
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
@@ -57,6 +69,11 @@ class Body:
     centre: tuple[float, float]
     mass: float
     moment_of_inertia: float
+
+    def scales(self) -> Iterator[tuple[str, float, tuple[float, float]]]:
+        """Yield numbers that must be solvable: name, value, and least and largest value."""
+        yield "mass [kg]", self.mass, MASSES
+        yield "moment of inertia [kg m^2]", self.moment_of_inertia, MASSES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,18 +143,18 @@ class Mechanism:
     def checked(self, where: str) -> Self:
         """Return the design; CaseError, in one line, for numbers that no model can solve, or an effect of the
         sides of a section where these are unknown."""
+        parts: tuple[Strip | Body, ...] = (*self.strips, *self.bodies)
+        for part in parts:
+            for name, value, (low, high) in part.scales():
+                if not low <= value <= high:
+                    expected = f"{low:g} to {high:g}"
+                    raise CaseError(f"{where}: {part.name}: {name}: got {value:.3g}, expected {expected}")
         named = [name for name in self.effects.names if name in OF_SIDES]
-        for strip in self.strips:
-            if said := out_of_scale(strip):
-                raise CaseError(f"{where}: {strip.name}: {said}")
-            if named and strip.width is None:
-                got = f"{where}: {strip.name}: got no sides for {' and '.join(named)}"
-                raise CaseError(
-                    f"{got}, expected width_m and thickness_m in place of area_m2 and second_moment_m4"
-                )
-        for body in self.bodies:
-            if said := too_heavy(body.mass, body.moment_of_inertia):
-                raise CaseError(f"{where}: {body.name}: {said}")
+        without = [strip.name for strip in self.strips if strip.width is None]
+        if named and without:
+            expected = "width_m and thickness_m in place of area_m2 and second_moment_m4"
+            got = f"got no sides for {' and '.join(named)}"
+            raise CaseError(f"{where}: {without[0]}: {got}, expected {expected}")
         return self
 
     def changed(self, strip: Callable[[Strip], Mapping[str, Any]], **body: Any) -> Self:

@@ -19,9 +19,6 @@ Values = Mapping[str, Any]
 #: Older name of the key of the outermost fibre: twice its distance.
 OLD_DEPTH = "section_depth_m"
 
-#: Numbers of a strip that double precision bears: stiffness [N] or mass per length [kg/m], slenderness [1].
-SCALES, SLENDERNESS = (1e-60, 1e60), (0.1, 1e10)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Sectioned:
@@ -90,14 +87,13 @@ class Sectioned:
             bending_moment: M, the same shape [N m].
         """
         modulus, inertia = self.youngs_modulus, self.second_moment_of_area
-        axial = axial_force / (modulus * self.area)
-        bending = bending_moment * self.fibre / (modulus * inertia)
-        if self.width_end or self.thickness_end:
-            from numpy import linspace
+        from numpy import linspace
 
-            b, t = self.growth(linspace(0.0, 1.0, axial_force.shape[-1]))
-            axial, bending = axial / (b * t), bending / (b * t * t)
-        return abs(axial) + abs(bending)
+        b, t = self.growth(linspace(0.0, 1.0, axial_force.shape[-1]))
+        axial = axial_force / (modulus * self.area) / (b * t)
+        bending = bending_moment * self.fibre / (modulus * inertia) / (b * t * t)
+        found: Array = abs(axial) + abs(bending)
+        return found
 
 
 def completed(
@@ -131,42 +127,6 @@ def completed(
             expected = f"{key.rule.expected}{named_one}"
             raise CaseError(f"{where}: {label}.{key.name}: got no such key{missing}, expected {expected}")
     return values
-
-
-def _root(area: float, inertia: float) -> float:
-    """Return sqrt(A/I), without end where the second moment is too small for a number."""
-    return math.sqrt(area / inertia) if inertia > 0.0 else math.inf
-
-
-def out_of_scale(strip: Any) -> str:
-    """Return a phrase for the first number of a strip, at its ends, that is too large or small to solve, or
-    ""."""
-    modulus, length = strip.youngs_modulus, strip.length
-    for b, t in (strip.growth(0.0), strip.growth(1.0)):
-        area, inertia = strip.area * b * t, strip.second_moment_of_area * b * t * t * t
-        made = {
-            "stiffness EA [N]": (modulus * area, SCALES),
-            "slenderness L sqrt(A/I) [1]": (length * _root(area, inertia), SLENDERNESS),
-            "stiffness EI/L^2 [N]": (modulus * inertia / length / length, SCALES),
-            "mass per length [kg/m]": (strip.density * area, SCALES),
-        }
-        if said := _beyond(made):
-            return said
-    return ""
-
-
-def too_heavy(mass: float, inertia: float) -> str:
-    """Return a phrase if a body's mass [kg] or moment of inertia [kg m^2] is too large to solve; otherwise
-    ""."""
-    none = (0.0, SCALES[1])
-    return _beyond({"mass [kg]": (mass, none), "moment of inertia [kg m^2]": (inertia, none)})
-
-
-def _beyond(made: Mapping[str, tuple[float, tuple[float, float]]]) -> str:
-    for name, (value, (low, high)) in made.items():
-        if not low <= value <= high:
-            return f"{name}: got {value:.3g}, expected {low:g} to {high:g}"
-    return ""
 
 
 def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
