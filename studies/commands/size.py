@@ -49,7 +49,7 @@ from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import by_row, numbers, plain, table
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.design import evaluate
-from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, VARIATION, Accurate
+from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, VARIATION, Answers
 from studies.design.optimise import SAME, STARTS, Outcome, best, numbered, search, settled
 from studies.design.question import Question
 from studies.errors import BadInput
@@ -154,14 +154,14 @@ def _require_sizable(where: str, start: Design) -> None:
             raise BadInput(f"{where}: {got}, expected {expected}")
 
 
-def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Accurate]:
+def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Answers]:
     """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
     own = task.accurate()
     if own.quantities[task.objective] <= NOTHING:
         expected = "what is not zero already: its stiffness does not vary"
         raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
     strengths = [strip.yield_strength or math.nan for strip in task.start.strips]
-    allowable = own.answers.largest(STRESS) if math.isnan(sum(strengths)) else min(strengths)
+    allowable = own.largest(STRESS) if math.isnan(sum(strengths)) else min(strengths)
     if arguments.max_stress_MPa is not None:
         allowable = 1e6 * arguments.max_stress_MPa
     wanted = arguments.stiffness if arguments.travel_mm is None else 1e-3 * arguments.travel_mm
@@ -178,7 +178,6 @@ class _Optimum:
     """
 
     outcome: Outcome
-    answers: Accurate
     path: Response
     elements: Mapping[str, float]
     no_elements: str = ""
@@ -186,13 +185,13 @@ class _Optimum:
     @classmethod
     def of(cls, asked: Question, found: Outcome) -> Self:
         """Return an optimum with all that is said of it."""
-        found, answers = settled(asked, found)
+        found = settled(asked, found)
         path, reason = answer_static(found.design, SplineSettings()), ""
         try:
             elements = evaluate.by_elements(found.design)
         except (NoReference, BadInput) as error:
             elements, reason = dict.fromkeys(KEYS, math.nan), str(error)
-        return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
+        return cls(outcome=found, path=path, elements=elements, no_elements=reason)
 
 
 def _named(asked: Question, measured: Mapping[str, float]) -> dict[str, float]:
@@ -206,7 +205,7 @@ def _numbers(asked: Question, at: Array) -> dict[str, float]:
 
 
 def _document(
-    asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
+    asked: Question, own: Answers, outcomes: list[Outcome], found: _Optimum | None
 ) -> dict[str, Any]:
     """Return the answer as the JSON object of the command; own: the case's answers."""
 
@@ -224,9 +223,9 @@ def _document(
     ]
     optimum = found and {
         "numbers": _numbers(asked, found.outcome.at),
-        "spline": _named(asked, found.answers.quantities),
-        "estimated_error": _named(asked, found.answers.errors),
-        "control_points": found.answers.control_points,
+        "spline": _named(asked, found.outcome.answers.quantities),
+        "estimated_error": _named(asked, found.outcome.answers.errors),
+        "control_points": found.outcome.answers.control_points,
         "finite_elements": _named(asked, found.elements),
         "validity": asdict(validity(found.path)),
         "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
@@ -261,7 +260,7 @@ def _said(asked: Question) -> tuple[str, str]:
 
 
 def _readable(
-    asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
+    asked: Question, own: Answers, outcomes: list[Outcome], found: _Optimum | None
 ) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
     yield from _said(asked)
@@ -298,14 +297,14 @@ def _ended(number: int, outcome: Outcome) -> str:
 
 def _comparison(asked: Question, case: Mapping[str, float], found: _Optimum) -> Iterator[str]:
     """Yield what case and optimum answer, how sure that is, and what `solve` says of the optimum."""
-    spline, errors = found.answers.quantities, found.answers.errors
+    spline, errors = found.outcome.answers.quantities, found.outcome.answers.errors
     columns = [("case", case), ("sized", spline), ("in FE", found.elements)]
     scales = {key: Scale.of_key(key) for key in _named(asked, case)}
     yield from table(by_row(scales, [(name, _named(asked, own)) for name, own in columns], DIGITS))
     if found.no_elements:
         yield f"the finite elements have no answer: {found.no_elements}"
     yield _gain(case[asked.objective] / spline[asked.objective])
-    points = f"{found.answers.control_points} control points"
+    points = f"{found.outcome.answers.control_points} control points"
     told = (f"{name} {e:.1e}" if math.isfinite(e) else f"{name} not estimated" for name, e in errors.items())
     yield f"estimated error of the splines, sized, {points}: {', '.join(told)}"
     if missed := [name for name, error in errors.items() if error > DEFAULT]:

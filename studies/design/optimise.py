@@ -372,17 +372,18 @@ def search(question: Question, begin: Array, progress: Progress) -> list[Outcome
     return [optimise(question, start) for start in watched(list(begin), progress)]
 
 
-def settled(question: Question, found: Outcome) -> tuple[Outcome, evaluate.Accurate]:
-    """Return an optimum with the control points that its own answers take, found again with them if these are
-    more than it was found with, and what it answers."""
+def settled(question: Question, found: Outcome) -> Outcome:
+    """Return an optimum with its answers by as many control points as their accuracy takes, found again with
+    them if these are more than it was found with."""
     while True:
-        answers = question.accurate(question.values(found.at))
-        if answers.control_points <= question.control_points:
-            return found, answers
-        question = replace(question, control_points=answers.control_points)
+        found = replace(found, answers=question.accurate(question.values(found.at)))
+        points = found.answers.control_points
+        if points <= question.control_points:
+            return found
+        question = replace(question, control_points=points)
         again = optimise(question, found.at[:-1])
         if not again.converged:
-            return found, answers
+            return found
         found = again
 
 
