@@ -76,7 +76,7 @@ class Sectioned:
         """Return width and thickness [m] of the rectangle with its A and I."""
         return rectangle_of(self.area, self.second_moment_of_area)
 
-    def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
+    def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> Any:
         """Return max |N/(EA) +- M c/(EI)|, the larger magnitude of the two extreme fibres (c: `fibre`).
 
         Exact for plane sections and small strain; neglects shear, the strips' initial curvature and the
@@ -89,11 +89,11 @@ class Sectioned:
         modulus, inertia = self.youngs_modulus, self.second_moment_of_area
         from numpy import linspace
 
+        axial = axial_force / (modulus * self.area)
+        bending = bending_moment * self.fibre / (modulus * inertia)
         b, t = self.growth(linspace(0.0, 1.0, axial_force.shape[-1]))
-        axial = axial_force / (modulus * self.area) / (b * t)
-        bending = bending_moment * self.fibre / (modulus * inertia) / (b * t * t)
-        found: Array = abs(axial) + abs(bending)
-        return found
+        axial, bending = axial / (b * t), bending / (b * t * t)
+        return abs(axial) + abs(bending)
 
 
 def completed(
