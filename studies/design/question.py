@@ -19,16 +19,7 @@ from studies.cases.document import is_mechanism, nearest
 from studies.cases.keys import SIDES
 from studies.cases.section import refuse_tapers
 from studies.design import evaluate
-from studies.design.evaluate import (
-    CENTRE_SHIFT,
-    CONTROL_POINTS,
-    STIFFNESS,
-    STRESS,
-    TRAVEL,
-    VARIATION,
-    Answers,
-    PathEnds,
-)
+from studies.design.evaluate import Answers
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep import varied
@@ -106,7 +97,7 @@ class Question:
     wanted: float = math.nan
     allowable_stress: float = math.inf
     ratios: tuple[_Ratio, ...] = ()
-    control_points: int = CONTROL_POINTS
+    control_points: int = evaluate.CONTROL_POINTS
 
     @classmethod
     def of(
@@ -147,8 +138,8 @@ class Question:
     def objectives(self) -> tuple[str, ...]:
         """What may be made least: the shift of a crossing that there is, the variation of a driven stiffness,
         and stress."""
-        shift = (CENTRE_SHIFT,) if self.start.crossing_point is not None else ()
-        return (*shift, *(() if self.start.rotation is None else (VARIATION,)), STRESS)
+        shift = (evaluate.CENTRE_SHIFT,) if self.start.crossing_point is not None else ()
+        return (*shift, *(() if self.start.rotation is None else (evaluate.VARIATION,)), evaluate.STRESS)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -158,7 +149,7 @@ class Question:
     @property
     def held(self) -> str:
         """The quantity that is wanted: where the bodies follow the loads, how far the body goes."""
-        return TRAVEL if self.start.rotation is None else STIFFNESS
+        return evaluate.TRAVEL if self.start.rotation is None else evaluate.STIFFNESS
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -220,14 +211,14 @@ class Question:
         those of the start.
 
         Raises:
-            PathEnds: the fewest control points do not reach the end of the range.
+            evaluate.PathEnds: the fewest control points do not reach the end of the range.
         """
         solved, least = cache(lambda points: self.answers(values, points)), math.inf
-        found = replace(solved(CONTROL_POINTS), errors=dict.fromkeys(self.quantities, math.nan))
-        for points in range(CONTROL_POINTS, MOST + 1, FURTHER):
+        found = replace(solved(evaluate.CONTROL_POINTS), errors=dict.fromkeys(self.quantities, math.nan))
+        for points in range(evaluate.CONTROL_POINTS, MOST + 1, FURTHER):
             if least <= DEFAULT:
                 break
-            with suppress(PathEnds):
+            with suppress(evaluate.PathEnds):
                 mine, fine = solved(points), solved(points + MORE)
                 errors = {name: mine.apart(fine, name) for name in self.quantities}
                 if max(errors.values()) < least:
