@@ -228,7 +228,7 @@ def _document(
         "control_points": found.outcome.answers.control_points,
         "finite_elements": _named(asked, found.elements),
         "validity": asdict(validity(found.path)),
-        "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
+        "active": [{"constraint": name, "price": price} for name, price in found.outcome.active.items()],
     }
     return {
         "objective": asked.objective,
@@ -269,7 +269,7 @@ def _readable(
     if found is not None:
         yield from _comparison(asked, own.quantities, found)
         designs.append(("sized", _numbers(asked, found.outcome.at)))
-        active = ", ".join(f"{each.name} ({each.price:+.2g})" for each in found.outcome.active)
+        active = ", ".join(f"{name} ({price:+.2g})" for name, price in found.outcome.active.items())
         yield f"held back by, with prices: {active or 'nothing'}"
         if held := [each.name for each in asked.variables if each.span == 0.0]:
             yield f"held as asked: {', '.join(held)}"
