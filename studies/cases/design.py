@@ -18,7 +18,7 @@ from studies.cases.document import (
     tables,
     values,
 )
-from studies.cases.effects import read_effects
+from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import EFFECT_KEYS, GROUND, MOMENTS
 from studies.cases.mechanism import Body, Mechanism, Point, Problem, Strip
 from studies.cases.rules import FREE, Key
@@ -69,13 +69,15 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 def design_of(where: str, document: Mapping[str, Any], changes: str | None = None) -> Design:
     """Return the design of a parsed case file, a mechanism if it has [[strips]]; CaseError as of
     `read_design`."""
-    found: Design = (_mechanism if is_mechanism(document) else _pivot)(where, document)
-    points = _points(where, document, [body.name for body in found.bodies])
-    return replace(found, points=points, effects=read_effects(where, document, changes)).checked(where)
+    effects = read_effects(where, document, changes)
+    found: Design = (_mechanism if is_mechanism(document) else _pivot)(where, document, effects)
+    if points := _points(where, document, [body.name for body in found.bodies]):
+        found = replace(found, points=points)
+    return found.checked(where)
 
 
-def _pivot(where: str, document: Mapping[str, Any]) -> Problem:
-    """Return the pivot of a case file, without its effects and points."""
+def _pivot(where: str, document: Mapping[str, Any], effects: Effects) -> Problem:
+    """Return the pivot of a case file with its effects, without points."""
     refuse_sections(where, document, [*keys.PIVOT, *keys.ANY])
     found: dict[str, Any] = {}
     for section, own in keys.PIVOT.items():
@@ -83,11 +85,11 @@ def _pivot(where: str, document: Mapping[str, Any]) -> Problem:
             needed = ", ".join(key.name for key in [key for key in own if not key.optional] or own)
             raise CaseError(f"{where}: [{section}]: got no such section, expected one with {needed}")
         found |= values(where, own, renamed(where, table(where, document, section)), section)
-    return Problem(**completed(where, found, "strip", "material"))
+    return Problem(**completed(where, found, "strip", "material"), effects=effects)
 
 
-def _mechanism(where: str, document: Mapping[str, Any]) -> Mechanism:
-    """Return the mechanism of a case file, without its effects and points."""
+def _mechanism(where: str, document: Mapping[str, Any], effects: Effects) -> Mechanism:
+    """Return the mechanism of a case file with its effects, without points."""
     refuse_sections(where, document, [*keys.MECHANISM, *keys.ANY])
     shared = {
         **values(where, keys.SECTION, renamed(where, table(where, document, "section")), "section"),
@@ -109,7 +111,7 @@ def _mechanism(where: str, document: Mapping[str, Any]) -> Mechanism:
         raise CaseError(f"{where}: [drive]: got no such section, expected one with increments")
     drive = {"rotation": None} | values(where, keys.DRIVE, table(where, document, "drive"), "drive")
     drive["body"] = _body_of(where, "drive.body", drive.get("body"), names)
-    return Mechanism(strips=strips, bodies=bodies, **drive)
+    return Mechanism(strips=strips, bodies=bodies, **drive, effects=effects)
 
 
 def _strip(where: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
