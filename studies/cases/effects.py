@@ -5,7 +5,7 @@ A table `[effects.NAME]` gives the parameters of an effect that the scene names,
 forgotten.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
@@ -161,13 +161,14 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     words = scene.get("effects", list(DEFAULT))
     if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
         raise CaseError(f"{path}: scene.effects: got {shown(words)}, expected a list of names")
-    tables, listed = _read_tables(path, content), _read_lists(path, content)
-    for name, own in listed.items():
-        tables[name] = (*tables.get(name, ()), *own)
-    names = _names_after(f"{path}: scene.effects", words, DEFAULT)
+    tables: dict[str, tuple[Table, ...]] = {}
+    listed = list(_read_lists(path, content))
+    for name, own in (*_read_tables(path, content), *listed):
+        tables[name] = (*tables.get(name, ()), own)
+    names = (*_names_after(f"{path}: scene.effects", words, DEFAULT), *(name for name, _ in listed))
     effects = Effects(
-        names=tuple(dict.fromkeys((*names, *listed))),
-        tables={name: alone(own) for name, own in tables.items()},
+        names=tuple(dict.fromkeys(names)),
+        tables={name: alone(every) for name, every in tables.items()},
     )
     _require_parameters(path, effects)
     changed = effects if changes is None else effects.changed(changes)
@@ -180,9 +181,8 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     return changed
 
 
-def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table, ...]]:
-    """Return the parameters of every table [effects.NAME], and of those of an array [[effects.NAME]]."""
-    found: dict[str, tuple[Table, ...]] = {}
+def _read_tables(path: str, content: Mapping[str, Any]) -> Iterator[tuple[str, Table]]:
+    """Yield name and parameters of every table [effects.NAME], and of those of an array [[effects.NAME]]."""
     effects = document.table(path, content, "effects")
     for name, given in effects.items():
         require_known(f"{path}: effects", name)
@@ -191,13 +191,11 @@ def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table
             every = document.tables(path, effects, name, within="effects.")
         elif not isinstance(given, dict):
             raise CaseError(f"{path}: effects.{name}: got {shown(given)}, expected a table [effects.{name}]")
-        found[name] = tuple(_parameters(path, name, own, label) for label, own in every)
-    return found
+        yield from ((name, _parameters(path, name, own, label)) for label, own in every)
 
 
-def _read_lists(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table, ...]]:
-    """Return the parameters of the effects that [[loads]] and the other lists stand for."""
-    found: dict[str, tuple[Table, ...]] = {}
+def _read_lists(path: str, content: Mapping[str, Any]) -> Iterator[tuple[str, Table]]:
+    """Yield name and parameters of the effects that [[loads]] and the other lists stand for."""
     for section, effects in LISTS.items():
         for label, given in document.tables(path, content, section):
             meant = [name for name, key in effects.items() if not key or key in given]
@@ -209,8 +207,7 @@ def _read_lists(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table,
             document.refuse_unknown(path, label, given, sorted(known))
             for name in meant:
                 own = {key.name: given[key.name] for key in EFFECT_KEYS[name] if key.name in given}
-                found[name] = (*found.get(name, ()), _parameters(path, name, own, label))
-    return found
+                yield name, _parameters(path, name, own, label)
 
 
 def _times(value: Any, factor: float) -> Any:
