@@ -116,11 +116,9 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
     """
     asked = Asked(design, settings, moving, None)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
+    grid = _keywords(asked.model, settings.keywords(), moving)
     with asked.refusals():
-        modelled = design.modelled(
-            asked.model, **scene, **_keywords(asked.model, settings.keywords(), moving)
-        )
-    return Asked(design, settings, moving, modelled)
+        return replace(asked, modelled=design.modelled(asked.model, **scene, **grid))
 
 
 def _keywords(model: Any, given: dict[str, Any], moving: bool) -> dict[str, Any]:
