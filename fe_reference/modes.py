@@ -1,5 +1,6 @@
 """Natural frequencies and shapes of small motion about a static state: K x = omega^2 M x."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,7 +43,7 @@ class Modes:
         frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi); 0 of a
             rigid motion.
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
-        body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
+        bodies: by name (C, 3): displacement of the centre of mass and rotation of a body, same scale.
         state (size,): reduced coordinates of the static state.
         estimate: of the frequencies' errors, where an accuracy was asked for; the rest is of the finest mesh.
 
@@ -60,7 +61,7 @@ class Modes:
     mass: str
     frequency: Array
     shapes: Array
-    body_shapes: Array
+    bodies: Mapping[str, Array]
     state: Array
     estimate: ErrorEstimate | None = None
 
@@ -159,7 +160,7 @@ def natural_frequencies(
             mass=kind,
             frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
             shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
-            body_shapes=structure.bodies(full).reshape(len(full), -1),
+            bodies=dict(zip(model.body_names, structure.bodies(full).swapaxes(0, 1), strict=True)),
             state=y,
         )
 

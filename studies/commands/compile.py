@@ -20,7 +20,8 @@ from multiprocessing import get_context
 from studies.__main__ import command_of
 from studies.__main__ import main as called
 from studies.answers.settings import SplineSettings
-from studies.cases.problem import FOLDER, named_case
+from studies.cases.design import SHIPPED
+from studies.cases.problem import named_case
 from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import command
 from studies.record.files import forget, forget_stale, write_whole
@@ -149,5 +150,5 @@ def _line(pattern: str, words: Iterable[str]) -> str:
 def _names(argument: str) -> list[str]:
     """Return the names of the suite that an argument accepts: cases or studies."""
     if argument in ("case", "cases"):
-        return sorted(path.stem for path in FOLDER.glob("*.toml"))
+        return SHIPPED
     return sorted({*STUDIES, *(name.partition("/")[0] for name in STUDIES)}) if argument == "names" else []

@@ -21,7 +21,7 @@ from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.answer import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.validity import Strip, anticlastic_factor, strips_of
+from studies.answers.validity import anticlastic_factor, strips_of, turned_roots
 from studies.cases.problem import named_case
 from studies.cases.section import of_sides
 from studies.engine import Answer, Claim, Part, Study, Tables
@@ -136,26 +136,19 @@ def _judged(name: str) -> Answer:
             "thickness_ratio": strip.thickness_ratio,
             "width_ratio": strip.width_ratio,
             "curvature_ratio": strip.curvature_ratio,
-            "clamped_least": float(strip.clamped[0]),
-            "clamped_most": float(strip.clamped[1]),
-            "flattened": float(strip.flattened),
-            "roots": -strip.turned_roots,
+            "clamped_least": strip.clamped[0],
+            "clamped_most": strip.clamped[1],
+            "flattened": strip.flattened,
+            "roots": -turned_roots(strip.thickness_ratio),
             "shear": shear / plain - 1.0,
         }
     }
 
 
-def _roots(ratio: float) -> float:
-    """Return the stiffness that roots take of a strip of that thickness over length."""
-    section = {"thickness": ratio, "width": WIDTH}
-    strip = Strip(length=1.0, **section, youngs_modulus=1.0, poisson_ratio=POISSON, density=1.0)
-    return float(strip.turned_roots)
-
-
 #: Ratio -> the part of the stiffness that a plain beam neglects, and the range that is searched.
 LEFT_OUT = {
     "width_ratio": (lambda ratio: plate_factors(ratio, POISSON).linear - 1.0, (0.02, 1.5)),
-    "thickness_ratio": (_roots, (1e-4, 0.5)),
+    "thickness_ratio": (turned_roots, (1e-4, 0.5)),
     "curvature_ratio": (lambda ratio: float(anticlastic_factor(ratio, POISSON)) - 1.0, (0.01, 40.0)),
 }
 

@@ -18,8 +18,6 @@ from studies.answers.models import put
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
-from studies.cases.mechanism import Mechanism as MechanismData
-from studies.cases.problem import Problem
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
 
@@ -124,11 +122,10 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
     """
     asked = put(design, settings, moving=True)
     mechanism: Mechanism = asked.modelled
-    body = design.body if isinstance(design, MechanismData) else None
     with asked.refusals():
         system = compile_scene(mechanism.released())
         motion = set_in_motion(system)
-        start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
+        start = static_state(mechanism.at_start(), design.rotation, body=design.body)[: system.layout.size]
         highest = highest_frequency(motion, start)
         modes = linear_modes(system, system.rest)[0]
     step = (CENTRAL_LIMIT if motion.inextensible else STABILITY_LIMIT) / highest
@@ -272,7 +269,7 @@ class Run:
 def _rest(design: Design, full: Answer) -> Array:
     """Return the centres (B, 2) before weight and drives act [m]; of a pivot before it turns, which hardly
     sags."""
-    if isinstance(design, Problem):
+    if design.crossing_point is not None:
         return full.path[:, 0]
     return np.array([body.centre for body in design.bodies]).reshape(-1, 2)
 

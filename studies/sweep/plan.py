@@ -6,7 +6,7 @@ An error in the file is one line before anything is solved.
 import copy
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,9 @@ from scipy.stats import qmc
 from studies.answers.models import put
 from studies.answers.settings import MODELS
 from studies.cases import document
+from studies.cases.design import case_file
 from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
-from studies.cases.problem import FOLDER
 from studies.cases.rules import TRUTH, Key, Rule, choice, positive, shown, text, whole
 from studies.kinds import Array
 from studies.sweep import points, varied
@@ -107,7 +107,8 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     tables = _tables(where, content)
     if not tables["vary"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
-    case = _case(where, content.get("case"), folder)
+    named = replace(text("the name of a case or a file"), read=partial(case_file, folder=folder))
+    case = document.parsed(document.admitted(where, "case", named, content.get("case")))
     model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
     known = varied.known(str(content["case"]), case, model)
     fixed = dict(_leaves(tables["set"]))
@@ -157,19 +158,6 @@ def _values(
     """Return the values of a table by its keys, each admitted by its rule; CaseError without a needed one."""
     keys = [Key(label, name, name, rule, optional=name not in needed) for name, rule in rules.items()]
     return document.values(where, keys, given, label)
-
-
-def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
-    """Return the document of the case: one that comes with the suite, or a file beside DESIGNS.toml."""
-    if not isinstance(name, str) or not name:
-        raise CaseError(f"{where}: case: got {shown(name)}, expected the name of a case or a file")
-    own = FOLDER / f"{name}.toml"
-    if own.is_file():
-        return document.parsed(own)
-    if name.endswith(".toml"):
-        return document.parsed(folder / name)
-    expected = document.nearest(name, sorted(path.stem for path in FOLDER.glob("*.toml")))
-    raise CaseError(f"{where}: case: got {name}, expected {expected}, or a file that ends in .toml")
 
 
 def _refuse_overlaps(where: str, keys: list[str], case: Mapping[str, Any]) -> None:

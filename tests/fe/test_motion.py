@@ -260,7 +260,7 @@ def test_holding_the_rotation_interlaces_the_frequencies() -> None:
     held = fe.natural_frequencies(model, rotation=1.0, count=5, held=True)
     assert np.all(held.frequency >= free.frequency[:5])
     assert np.all(held.frequency <= free.frequency[1:])
-    assert np.all(held.body_shapes[:, 2] == 0.0)
+    assert np.all(held.bodies["body"][:, 2] == 0.0)
 
 
 def test_small_meshes_give_all_their_modes() -> None:
