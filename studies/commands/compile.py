@@ -79,10 +79,11 @@ def _enter(calls: tuple[str, ...]) -> None:
 
 def _many() -> None:
     """Solve several designs in one call."""
-    from spline_model.batch import solve_many
+    import spline_model
 
     case = named_case(CASE)
-    solve_many(case.pivot_parameters(), rotation=0.1, increments=1, section_depth=case.depth)
+    pivot = case.modelled(spline_model)
+    spline_model.solve_many(pivot, {}, rotation=0.1, increments=1, section_depth=case.depth)
 
 
 def _impulses() -> None:

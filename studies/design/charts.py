@@ -8,6 +8,7 @@ fibre, |N|/(EA) + |M| t/(2 EI). Turned to either side the pivot is its own mirro
 enough. The theory is limited by the effects on the stiffness that a plain beam neglects.
 """
 
+import math
 from itertools import product
 from typing import Any
 
@@ -16,7 +17,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from spline_model import solve_many
+from spline_model import cross_axis_pivot, solve_many
 from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.answer import centre_shift
@@ -71,13 +72,15 @@ def paths(ratios: Array, inclinations: Array, slenderness: float) -> dict[str, A
         ValueError: a pivot that is not reached.
     """
     angles, section = np.radians(inclinations), of_sides(WIDTH, 1.0 / slenderness)
-    unit = dict.fromkeys(("length", "youngs_modulus", "density", "body_mass", "body_moment_of_inertia"), 1.0)
+    ones = ("length", "youngs_modulus", "density", "body_mass", "body_moment_of_inertia")
+    unit: dict[str, Any] = {**dict.fromkeys(ones, 1.0), **section, "poisson_ratio": POISSON}
+    pivot = cross_axis_pivot(**unit, crossing_ratio=0.5, inclination=math.pi / 4, control_points=POINTS)
     found = solve_many(
-        {**unit, **section, "poisson_ratio": POISSON, "crossing_ratio": ratios, "inclination": angles},
+        pivot,
+        {"crossing_ratio": ratios, "inclination": angles},
         rotation=np.radians(max(ROTATIONS)),
         increments=round(max(ROTATIONS) / INCREMENT),
         section_depth=1.0 / slenderness,
-        control_points=POINTS,
     )
     if not found.converged.all():
         raise ValueError(f"charts: {np.sum(~found.converged)} designs of L/t {slenderness:g} are not reached")
