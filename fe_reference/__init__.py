@@ -16,7 +16,7 @@ forms, integrated and assembled by scikit-fem, give the same energy, forces and 
 rest; a test holds both elements to that.
 """
 
-from .dynamics import solve_motion, solve_release
+from .dynamics import solve_motion
 from .effects import DEFAULT_EFFECTS, DrivenRotation
 from .model import ELEMENTS, BodyDesign, Model, compliant_mechanism, cross_axis_pivot
 from .modes import Modes, natural_frequencies
@@ -26,7 +26,7 @@ from .read import ConvergenceError, InvalidParameter
 from .response import CriticalPoint
 from .solid import SolidPath, SolidStrip, solve_solids
 from .solution import ErrorEstimate, StaticSolution, Status, StripFields, strip_fields
-from .statics import solve_mechanism, solve_statics
+from .statics import solve_statics
 from .strip import StripDesign
 
 __all__ = [
@@ -52,9 +52,7 @@ __all__ = [
     "cross_axis_pivot",
     "natural_frequencies",
     "plate_factors",
-    "solve_mechanism",
     "solve_motion",
-    "solve_release",
     "solve_solids",
     "solve_statics",
     "strip_fields",

@@ -135,45 +135,6 @@ class Run(read.Checked):
             raise InvalidParameter("samples", samples, f"at most {most} samples of {size} coordinates [1]")
 
 
-def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
-    """Release the only body at rest from the static state at a rotation.
-
-    Parameters
-    ----------
-    pivot : Model
-    start : float, rad
-        Rotation at the release; None: no rotation is driven.
-    duration : float, s
-    options
-        Keywords of `solve_motion`.
-
-    Returns
-    -------
-    Trajectory
-        T records, the start first: time (T,), rotation (T,), energies (T,) and more.
-
-    Raises
-    ------
-    InvalidParameter, ConvergenceError
-        As in `solve_motion`.
-
-    References
-    ----------
-    Valentini and Pezzuti (2013), Fig 6.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
-
-    >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
-    >>> motion.time.shape
-    (6,)
-    """
-    require_model(pivot)
-    pivot.body_index(None)
-    return solve_motion(pivot, start=start, duration=duration, **options)
-
-
 def solve_motion(
     mechanism: Model, *, check: bool = True, raise_on_failure: bool = True, **asked: Any
 ) -> Trajectory:

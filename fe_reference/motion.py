@@ -365,7 +365,7 @@ class Trajectory(Answer):
     --------
     With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
-    >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
+    >>> motion = solve_motion(pivot, start=0.1, duration=1e-4, samples=5, check=False)
     >>> motion.bodies["body"].shape, motion.settings["integrator"]
     ((6, 3), 'central-difference')
     """

@@ -20,47 +20,7 @@ from .structure import structure_of
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 
 
-def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
-    """Rotate the only body from 0 to `rotation`.
-
-    Parameters
-    ----------
-    pivot : Model
-    rotation : float or sequence of float, rad
-        End of the path, or ends of several legs.
-    options
-        Keywords of `solve_mechanism`.
-
-    Returns
-    -------
-    StaticSolution
-        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
-
-    Raises
-    ------
-    InvalidParameter, ConvergenceError
-        As in `solve_mechanism`.
-
-    References
-    ----------
-    Crisfield (1991), as in ``fe_reference.law``.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
-
-    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
-    >>> path.torque.shape
-    (6,)
-    >>> print(f"{path.torque[-1]:.4f} N m")
-    0.1634 N m
-    """
-    require_model(pivot)
-    pivot.body_index(None)
-    return solve_mechanism(pivot, rotation=read.several("rotation", rotation, "rad"), **options)
-
-
-def solve_mechanism(
+def solve_statics(
     mechanism: Model,
     *,
     body: str | None = None,
@@ -105,7 +65,7 @@ def solve_mechanism(
     Returns
     -------
     StaticSolution
-        S states; arrays as in `solve_statics`.
+        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
 
     Raises
     ------
@@ -123,7 +83,10 @@ def solve_mechanism(
     --------
     With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
-    >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
+    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
+    >>> print(f"{path.torque[-1]:.4f} N m")
+    0.1634 N m
+    >>> solve_statics(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
     [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_model(mechanism)

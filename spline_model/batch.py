@@ -47,10 +47,10 @@ def solve_many(
         Rotated and reported body; None is the only one.
     increments : int, default 20
     order : str
-        "loads first" (default) or "together", as in ``spline_model.statics.solve_mechanism``. Weight and
+        "loads first" (default) or "together", as in ``spline_model.statics.solve_statics``. Weight and
         pre-strain act first.
     accuracy : float, 1, default None
-        As in ``spline_model.statics.solve_mechanism``, for each design: each gets its own number of control
+        As in ``spline_model.statics.solve_statics``, for each design: each gets its own number of control
         points, and its estimated `errors`.
     threads : int, default None
         Number of threads; None is one per core. Results do not depend on it.

@@ -105,7 +105,7 @@ class Asked:
         design = self.design
         given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
         with self.refusals():
-            return self.model.solve_mechanism(self.modelled, **{"body": design.body} | given)
+            return self.model.solve_statics(self.modelled, **{"body": design.body} | given)
 
 
 def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:

@@ -99,7 +99,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
     asked = put(frame.design, settings)
     how: dict[str, Any] = {"increments": frame.design.increments, "control": "arc-length", "branch": branch}
     with asked.refusals():
-        path = asked.model.solve_mechanism(asked.modelled, raise_on_failure=False, **how)
+        path = asked.model.solve_statics(asked.modelled, raise_on_failure=False, **how)
     if (path.inertia < 0).any():
         raise BadInput(
             f"spline: measure: got {settings.measure}, expected one with a potential: stability has no other"

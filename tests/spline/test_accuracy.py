@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import spline_model
-from spline_model import Status, cross_axis_pivot, solve_many, solve_mechanism, solve_release, solve_statics
+from spline_model import Status, cross_axis_pivot, solve_many, solve_motion, solve_statics
 from tests import gates
 from tests.frames import one_strip
 from tests.models import scene
@@ -114,9 +114,9 @@ def test_an_estimate_is_that_of_its_largest_part(part):
     """Requirement: turns, shear forces and stresses count in the estimate where they alone are far off."""
     loads, quantity, unit = ALONE[part]
     bar = one_strip(spline_model, loads, loads, section=BAR, control_points=4)
-    solution = solve_mechanism(bar, increments=4, accuracy=0.9)
+    solution = solve_statics(bar, increments=4, accuracy=0.9)
     assert solution.estimate.trials == (4,)
-    four, seven = (replace(solve_mechanism(bar.on(1, n), increments=4), balanced=True) for n in (4, 7))
+    four, seven = (replace(solve_statics(bar.on(1, n), increments=4), balanced=True) for n in (4, 7))
     error = np.abs(quantity(four) - quantity(seven)).max() / np.abs(unit(seven)).max()
     assert error > 1e-4
     assert solution.estimate.errors[part] == pytest.approx(error, rel=1e-6)
@@ -233,7 +233,8 @@ ASKED = ("accuracy", "records", "integrator", "step", "start")
 def swung(n=6, duration=DURATION, **settings):
     """The release of Table 1 from a quarter turn, or with other settings."""
     asked = {name: settings.pop(name) for name in ASKED if name in settings}
-    return solve_release(scenes.pivot(control_points=n, **settings), duration=duration, **asked)
+    asked = {"start": QUARTER, "duration": duration} | asked
+    return solve_motion(scenes.pivot(control_points=n, **settings), **asked)
 
 
 @cache

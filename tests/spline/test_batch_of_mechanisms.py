@@ -67,7 +67,7 @@ def batch_error(thickness: float = 1.0) -> float:
     batch = spline_model.solve_many(given, values, body="crank", rotation=turns, increments=3)
     assert batch.converged.all()
     for i, turn in enumerate(turns):
-        path = spline_model.solve_mechanism(rebuilt(given, i), body="crank", rotation=turn, increments=3)
+        path = spline_model.solve_statics(rebuilt(given, i), body="crank", rotation=turn, increments=3)
         errors.append(np.abs(batch.torque[i] - path.torque).max() / np.abs(path.torque).max())
         errors.append(np.abs(batch.stiffness[i] / path.stiffness - 1.0).max())
     return float(max(errors))
@@ -85,7 +85,7 @@ def test_sensitivities_are_the_differences_of_a_batch(name, own):
     steps = 2e-3 / 2 ** np.arange(4)[:, None]
     batch = spline_model.solve_many(given, {name: own + np.concatenate((steps, -steps))[:, 0]}, **asked)
     found = spline_model.sensitivities(
-        given, spline_model.solve_mechanism(given, **asked), parameters=(name,), body="crank"
+        given, spline_model.solve_statics(given, **asked), parameters=(name,), body="crank"
     )
     for quantity in ("torque", "stiffness"):
         up, down = np.split(getattr(batch, quantity), 2)
