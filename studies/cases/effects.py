@@ -77,7 +77,7 @@ class Effects:
         every = {
             name: [STANDARD.get(name, {}) | dict(own) for own in self.every(name)] for name in self.names
         }
-        return {name: alone(own) for name, own in every.items() if any(own)}
+        return {name: _alone(own) for name, own in every.items() if any(own)}
 
     def grown(self, factor: float, more: Mapping[str, tuple[str, ...]] | None = None) -> "Effects":
         """Return the effects with all loads and drives, and `more` parameters by effect, times a factor
@@ -94,7 +94,7 @@ class Effects:
         """Return the effects with other parameters of every instance, by a function of its name and
         parameters."""
         every = {name: [change(name, own) for own in self.every(name)] for name in self.tables}
-        return replace(self, tables={name: alone(own) for name, own in every.items()})
+        return replace(self, tables={name: _alone(own) for name, own in every.items()})
 
     def renamed(self, names: Sequence[str]) -> "Effects":
         """Return the effects with other names and the same tables."""
@@ -120,7 +120,7 @@ class Effects:
         return scene
 
 
-def alone(every: Sequence[Table]) -> Any:
+def _alone(every: Sequence[Table]) -> Any:
     """Return the parameters of the instances of an effect: a table for each of several, or the only one."""
     return tuple(every) if len(every) > 1 else every[0]
 
@@ -168,7 +168,7 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     names = (*_names_after(f"{path}: scene.effects", words, DEFAULT), *(name for name, _ in listed))
     effects = Effects(
         names=tuple(dict.fromkeys(names)),
-        tables={name: alone(every) for name, every in tables.items()},
+        tables={name: _alone(every) for name, every in tables.items()},
     )
     _require_parameters(path, effects)
     changed = effects if changes is None else effects.changed(changes)

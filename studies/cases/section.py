@@ -171,7 +171,7 @@ def renamed(where: str, content: Values) -> Values:
     if not isinstance(depth, int | float) or isinstance(depth, bool) or FIBRE.name in content:
         return content
     _warn_of_name(where)
-    return {FIBRE.name: depth / 2.0} | without(content, [OLD_DEPTH])
+    return {FIBRE.name: depth / 2.0} | _without(content, [OLD_DEPTH])
 
 
 @cache
@@ -189,12 +189,12 @@ def inherited(shared: Values, own: Values) -> dict[str, Any]:
     left = dict(shared)
     for pair, other in (((*SIDES, *TAPER), MOMENTS), (MOMENTS, (*SIDES, *TAPER))):
         if any(key.attribute in own for key in pair):
-            left = without(left, [key.attribute for key in (*other, FIBRE)])
+            left = _without(left, [key.attribute for key in (*other, FIBRE)])
     if NAMED.attribute in own:
-        left = without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
+        left = _without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
     return left | dict(own)
 
 
-def without(values: Values, names: list[str]) -> dict[str, Any]:
+def _without(values: Values, names: list[str]) -> dict[str, Any]:
     """Return the values without those of these names."""
     return {name: value for name, value in values.items() if name not in names}

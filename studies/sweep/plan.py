@@ -46,20 +46,17 @@ SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 CHUNK = 64
 #: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
 CHUNKS = 16
-#: Kind of an analysis -> key of an option, the keyword that it sets, its rule and what it is if not given.
-OPTIONS: dict[str, tuple[tuple[str, str, Rule, Any], ...]] = {
-    "static": (),
-    "modes": (
-        ("rotation_deg", "rotation", ROTATION, None),
-        ("count", "count", whole(1, 100), 3),
-        ("held", "held", TRUTH, None),
-    ),
-    "release": (
-        ("duration_s", "duration", positive("s"), 0.05),
-        ("step_s", "step", positive("s"), None),
-        ("integrator", "integrator", text("the name of an integrator"), None),
-    ),
+#: Kind of an analysis -> its options with their rules; and what options are that are not given.
+OPTIONS: dict[str, dict[str, Rule]] = {
+    "static": {},
+    "modes": {"rotation_deg": ROTATION, "count": whole(1, 100), "held": TRUTH},
+    "release": {
+        "duration_s": positive("s"),
+        "step_s": positive("s"),
+        "integrator": text("the name of an integrator"),
+    },
 }
+USUAL: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,13 +170,11 @@ def _refuse_overlaps(where: str, keys: list[str], case: Mapping[str, Any]) -> No
 
 
 def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Return kind and options of a task."""
+    """Return kind and options of a task, by their names without units."""
     kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
-    rows = (("kind", "kind", choice(*KINDS), kind), *OPTIONS[kind])
-    keys = [Key("analysis", name, keyword, rule, optional=True) for name, keyword, rule, _ in rows]
-    found = {keyword: usual for _, keyword, _, usual in rows if usual is not None}
-    found |= document.values(where, keys, given, "analysis")
-    return found.pop("kind"), found
+    found = _values(where, "analysis", {"kind": choice(*KINDS), **OPTIONS[kind]}, given)
+    named = {name.rpartition("_")[0] or name: value for name, value in found.items() if name != "kind"}
+    return kind, USUAL[kind] | named
 
 
 def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:
