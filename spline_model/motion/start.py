@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, StripDamping
+from spline_model.effects import Bending
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
@@ -57,19 +57,9 @@ class Motion:
         return bool((np.diag(self.rigidity) == 0.0).any())
 
     @property
-    def damped(self) -> bool:
-        """Whether strips have a relaxation time."""
-        return bool(self.system.scene.of(StripDamping))
-
-    @property
     def massless(self) -> bool:
         """Whether no strip has inertia, so that only the bodies' coordinates are dynamic."""
         return not self.system.mass[: self.system.layout.poses.start].any()
-
-    @property
-    def turns(self) -> Places:
-        """Places of the rotations in q."""
-        return np.array([start + 2 for start in self.system.layout.bodies.values()], dtype=np.int64)
 
     def later(self, time: float) -> Motion:
         """Return the motion with the clock set to ``time`` [s]: histories and drives are that far on."""
