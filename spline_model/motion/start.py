@@ -89,10 +89,14 @@ class Motion:
 
         z (N,): unknowns [m, rad, N]; active, before: drive rows (D,) that hold now and before; time [s].
         """
-        drives, origin = self.drives, self.drives.origin.copy()
-        for d in np.flatnonzero(active & ~before.astype(bool)):
-            origin[d] = z[drives.coordinate[d]] - factor_of(d, time, drives) * drives.target[d]
+        drives = self.drives
+        begun = z[drives.coordinate] - self._factors(time) * drives.target
+        origin = np.where(active > before, begun, drives.origin)
         return replace(self, drives=drives._replace(origin=origin))
+
+    def _factors(self, time: float) -> Array:
+        """Factors (D,) of the drives at an instant [s]."""
+        return np.array([factor_of(d, time, self.drives) for d in range(len(self.drives.row))])
 
     def catch(self, z: Array, v: Array, active: Places, time: float, span: float) -> tuple[Array, float]:
         """Return the velocity (Q,) that the active drives allow, and the kinetic energy that is lost [J].
@@ -102,13 +106,10 @@ class Motion:
         an inelastic catch.
         """
         drives, held, mass = self.drives, np.flatnonzero(active), self.system.mass
-        if not held.size:
-            return v, 0.0
         model, at = require_reduced(self.system), drives.coordinate[held]
         places = at - self.system.layout.poses.start
         by = coordinates_by(model, from_unknowns(model, z))
-        before, after = ([factor_of(d, instant, drives) for d in held] for instant in (time, time + span))
-        rates = np.subtract(after, before) / span * drives.target[held]
+        rates = (self._factors(time + span) - self._factors(time))[held] / span * drives.target[held]
         moved = by @ np.linalg.lstsq(by, v, rcond=None)[0]
         moved += by[:, places] @ ((rates - moved[at]) / by[at, places])
         free = np.delete(by, places, axis=1)
