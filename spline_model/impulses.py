@@ -134,7 +134,7 @@ class Problem(NamedTuple):
             relaxation=system.relaxation_time,
             unit=system.scales.unit / system.scales.energy,
             energy=system.scales.energy,
-            turns=motion.turns,
+            turns=np.array([start + 2 for start in system.layout.bodies.values()], dtype=np.int64),
             rows=rows,
             first=np.array([0, *ends], dtype=np.int64),
             grounded=int(clamps.grounded or drives.row.size > 0),

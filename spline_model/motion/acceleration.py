@@ -121,17 +121,21 @@ def _strip_system(s, grid, strips, local, room):
 
 
 @part()
-def _solve_ends(s, strips, room, push):
-    """A strip's s_A'' and s_B'', into ``solved``, from its bodies' and the rest of its equations."""
-    g, h, y, tip, root = room.g[s], room.h[s], room.solved, strips.tips[s], strips.roots[s]
-    size = 2 + 3 * (tip >= 0) + 3 * (root >= 0)
-    for i in range(2, size):
-        y[i] = push[place_of(i - 2, tip, root, 0)]
-    for i in range(1, -1, -1):
+def _substitute(count, size, g, h, x):
+    """Solve the first ``count`` of eliminated equations for x (size,), whose other entries are known."""
+    for i in range(count - 1, -1, -1):
         total = g[i]
         for j in range(i + 1, size):
-            total -= h[i, j] * y[j]
-        y[i] = total / h[i, i]
+            total -= h[i, j] * x[j]
+        x[i] = total / h[i, i]
+
+
+@part()
+def _solve_ends(s, size, strips, room, push):
+    """A strip's s_A'' and s_B'', into ``solved``, from its bodies' and the rest of its equations."""
+    for i in range(2, size):
+        room.solved[i] = push[place_of(i - 2, strips.tips[s], strips.roots[s], 0)]
+    _substitute(2, size, room.g[s], room.h[s], room.solved)
 
 
 @part()
@@ -151,16 +155,6 @@ def _follow_ends(s, at, grid, strips, local, room, push):
             x -= grid.follow[s, p, j] * c[2 * (count + p)]
             y -= grid.follow[s, p, j] * c[2 * (count + p) + 1]
         push[at + 2 * j], push[at + 2 * j + 1] = x, y
-
-
-@part()
-def _solve_bodies(tangent, load, push):
-    """Accelerations of the bodies; upper tangent."""
-    eliminate(load.size, load.size, load, tangent)
-    for i in range(load.size - 1, -1, -1):
-        for j in range(i + 1, load.size):
-            load[i] -= tangent[i, j] * push[j]
-        push[i] = load[i] / tangent[i, i]
 
 
 @part()
@@ -191,9 +185,11 @@ def accelerate(y, w, grid, arrays, masses, room, push):
         scatter(2, size, tip, root, poses, room.g[s], room.h[s], load, tangent)
     if bodies.frames.place.size > 0:
         fold_moving(w, tangent, load, bodies.frames, arms)
-    _solve_bodies(tangent, load, push)
+    eliminate(poses, poses, load, tangent)
+    _substitute(poses, poses, load, tangent, push)
     spread(push, bodies.frames, arms)
     draw(w, push, bodies.frames, arms)
     for s in range(strips.roots.size):
-        _solve_ends(s, strips, room, push)
+        size = 2 + 3 * (strips.tips[s] >= 0) + 3 * (strips.roots[s] >= 0)
+        _solve_ends(s, size, strips, room, push)
         _follow_ends(s, poses + s * (own + modes), grid, strips, local, room, push)

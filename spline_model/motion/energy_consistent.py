@@ -18,7 +18,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
+from spline_model.motion.arrays import RECORDED, Masses, Scratch, State, sizes_of, zeros
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
@@ -88,28 +88,30 @@ def _accept(h, active, state, arrays, masses, work):
 
 @part()
 def book(y, rate, strips_kinetic, potential, totals, masses, arrays, row):
-    """The last numbers of a record of a state whose points are placed, in EI/L: kinetic energy, potential of
-    the weight, energy of strains and springs, work, losses.
+    """Fill the record of a state whose points are placed: y, rates of the bodies and, last, energies in EI/L.
 
+    These are kinetic energy, potential of the weight, energy of strains and springs, work, losses.
     strips_kinetic: kinetic energy of the strips; potential: of weight, strains and springs.
     """
-    kinetic, weight = strips_kinetic, 0.0
+    kinetic, weight, last = strips_kinetic, 0.0, row[row.size - ENERGIES :]
+    copy(y, row)
+    copy(rate, row[y.size :])
     for i in range(rate.size):
         kinetic += 0.5 * masses.inertia[i] * rate[i] * rate[i]
         weight -= arrays.bodies.weight[i] * y[i]
     for s in range(arrays.strips.roots.size):
         for i in range(2 * arrays.shape.order.size):
             weight -= arrays.strips.numbers[s, ON_POINTS + i] * arrays.local.nodal[s, POINTS, i]
-    row[0], row[1], row[2], row[3], row[4] = kinetic, weight, potential - weight, totals[0], totals[1]
+    last[0], last[1], last[2], last[3], last[4] = kinetic, weight, potential - weight, totals[0], totals[1]
 
 
 @kernel()
 def store(state, arrays, masses, row):
     """Keep map and curve of a state that is given by its coordinates, and fill its record.
 
-    It is what ``State.record`` holds, and the numbers of ``book``.
+    It is that of ``book``, with the velocity of the control points before the energies.
     """
-    strips, shape, local, at = arrays.strips, arrays.shape, arrays.local, state.record.size
+    strips, shape, local, points = arrays.strips, arrays.shape, arrays.local, state.velocity.shape[1]
     out, spare, n = arrays.space.out, arrays.space.states[SPARE], shape.order.size
     own, modes, kinetic = 2 * n - 6, strips.compliance.shape[1], 0.0
     begin(state.y, 0.0, arrays.bodies, arrays.space)
@@ -122,9 +124,9 @@ def store(state, arrays, masses, row):
         forces_of_strains(s, strips, local, a)
         evaluate_residual(s, a, n, shape, strips, local, out)
         kinetic += 0.5 * quadratic(masses.points[s], state.velocity[s])
-    copy(state.record, row)
+        copy(state.velocity[s], row[state.y.size + state.rate.size + s * points :])
     potential = out[BENDING] + out[AXIAL] + out[DEAD]
-    book(state.y, state.rate, kinetic, potential, state.totals, masses, arrays, row[at:])
+    book(state.y, state.rate, kinetic, potential, state.totals, masses, arrays, row)
 
 
 @kernel()
@@ -181,12 +183,12 @@ class Stepper(Moves):
         self.motion = start.motion
         self.model = model = require_reduced(self.motion.system)
         self._begin()
-        self.state, self._work = State.of(self._sizes), zeros(Scratch, self._sizes)
+        self.state, self._work = zeros(State, self._sizes), zeros(Scratch, self._sizes)
         self._work.held[self._masses.frames.carried] = 1
         self.state.y[:] = from_unknowns(model, start.z)
         self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
         self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
-        self.width = self.state.record.size + ENERGIES
+        self.width = sum(each.size for each in self.state[:RECORDED]) + ENERGIES
         self.record()
 
     def _begin(self) -> None:

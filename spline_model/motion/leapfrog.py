@@ -215,7 +215,8 @@ def highest_frequency(motion: Motion, z: Array) -> float:
 
 def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
-    if motion.system.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
+    damped = motion.system.drag.size or motion.system.relaxation_time > 0.0
+    if damped or motion.drives.row.size or motion.loads.coordinate.size:
         expected = "energy (the default) for damping, loads, drives and supports"
         raise InvalidParameter("integrator", NAME, expected)
     if motion.inextensible:

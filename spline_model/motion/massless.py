@@ -301,10 +301,7 @@ def _store(poses, masses, arrays, row):
     for s in range(strips.roots.size):
         at = rate.size + s * (own + strips.compliance.shape[1])
         place_points(s, y[at : at + own], y, strips, arrays.local)
-    copy(y, row)
-    copy(rate, row[y.size :])
-    energies = row[y.size + rate.size :]
-    book(y, rate, 0.0, poses.energy[0], poses.totals, masses, arrays, energies)
+    book(y, rate, 0.0, poses.energy[0], poses.totals, masses, arrays, row)
 
 
 @kernel()
@@ -347,7 +344,7 @@ def _require_known(motion: Motion) -> None:
     beside = system.layout.poses.start + 3 * len(system.scene.own_bodies)
     across = any(any(spring.damping) and spring.other for spring in system.scene.of(Spring))
     for found, what, expected in (
-        (motion.damped, "strip_damping", "with it: massless strips have no rate"),
+        (system.relaxation_time > 0.0, "strip_damping", "with it: massless strips have no rate"),
         (across, "a damper between bodies", "for one in a motion"),
         (motion.drives.row.size > 0, "a drive", "for a driven motion"),
         (

@@ -163,7 +163,7 @@ class Moves:
 
     def shown(self, records: Array) -> tuple[Array, Array]:
         """Return poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records (R, W)."""
-        scales, bodies = self.motion.system.scales, len(self.motion.turns)
+        scales, bodies = self.motion.system.scales, len(self.motion.system.layout.bodies)
         poses = records[:, : 3 * bodies] * np.tile(scales.pose, bodies)
         return poses, records[:, -ENERGIES:] * scales.energy
 
