@@ -121,13 +121,6 @@ def test_unknown_names_are_one_line(name):
             solve(design, **(keywords | {parameter: "other"}))
 
 
-def test_no_angle_is_one_line():
-    """None is no angle where one is needed; a release and modes may drive no rotation."""
-    solve, design, keywords = CALLS["spline statics"]
-    with pytest.raises(REFUSALS, match=r"^rotation: got None, expected a finite number"):
-        solve(design, **(keywords | {"rotation": None}))
-
-
 @pytest.mark.parametrize("name", ["spline statics", "fe statics"])
 @pytest.mark.parametrize(
     "legs", [[0.1, 0.05], (0.1,), np.array([0.1, 0.05]), np.float64(0.1), np.float32(0.1), 1]
