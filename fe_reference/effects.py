@@ -28,7 +28,13 @@ class Effect(read.Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class Several(Effect):
-    """An effect of which a model definition may have any number, each with its own parameters."""
+    """An effect of which a model definition may have any number, each with its own parameters.
+
+    Attributes:
+        body: what it acts on, by name; None: the only one.
+    """
+
+    body: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +49,6 @@ class Load(Several):
         at: point of the body (x, y) [m] at rest where the force acts, by default its centre.
     """
 
-    body: str | None = None
     strip: str | None = None
     history: Annotated[read.History, read.history] = ALWAYS_FULL
     force: Annotated[read.Pair, read.pair, "N"] = (0.0, 0.0)
@@ -72,7 +77,6 @@ class Prescribed(Several):
         fixed: coordinates, of WAYS, that stay, in a motion too.
     """
 
-    body: str | None = None
     history: Annotated[read.History | None, read.optional, read.history] = None
     displacement: Annotated[tuple[float | None, float | None] | None, read.optional, read.partly, "m"] = None
     angle: Annotated[float | None, read.optional, read.finite, "rad"] = None
@@ -156,7 +160,6 @@ class Spring(Several):
         rotational_stiffness, rotational_damping: of the turns [N m/rad, N m s/rad].
     """
 
-    body: str | None = None
     other: str | None = None
     stiffness: Annotated[read.Pair, read.not_negatives, "N/m"] = (0.0, 0.0)
     rotational_stiffness: Annotated[float, read.not_negative, "N m/rad"] = 0.0

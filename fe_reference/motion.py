@@ -23,7 +23,6 @@ from .loads import load_power, put_factors
 from .mass import about_mass_centre, carried_over, mass_matrix
 from .model import Model
 from .places import turned
-from .read import Norms
 from .solution import Answer, Status
 from .structure import Structure, structure_of
 
@@ -370,22 +369,12 @@ class Trajectory(Answer):
     ((6, 3), 'central-difference')
     """
 
-    status: Status
-    message: str
     time: Array
-    bodies: Mapping[str, Array]
     rates: Mapping[str, Array]
     kinetic_energy: Array
     strain_energy: Array
-    gravity_energy: Array
-    work: Array
     dissipated: Array
-    shape: Array
-    states: Array
-    counters: Mapping[str, int]
     settings: Mapping[str, float | str]
-    history: Norms
-    seconds: Mapping[str, float]
     starts_still: bool = False
     resolution: str = ""
     rotation_error: float = math.nan

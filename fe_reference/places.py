@@ -70,15 +70,14 @@ def carry(carried: Carried, u: Array) -> None:
         carried: K rows, their carriers and offsets, and the arms.
         u: displacements of all rows (rows, 3) [m, rad]; those of carried rows are overwritten.
     """
-    (rows, carrier, offsets, rigid, arms), last, sine, less = carried, -1, 0.0, 0.0
+    (rows, carrier, offsets, rigid, arms), last, sine, cosine, less = carried, -1, 0.0, 1.0, 0.0
     for k in range(len(rows)):
-        i, b = rows[k], carrier[k]
-        if b != last:  # R - 1 written with sines: no cancellation at small turns
-            sine, less, last = math.sin(u[b, 2]), 2.0 * math.sin(0.5 * u[b, 2]) ** 2, b
-        x = -less * offsets[k, 0] - sine * offsets[k, 1]
-        y = sine * offsets[k, 0] - less * offsets[k, 1]
-        arms[k, 0], arms[k, 1] = offsets[k, 0] + x, offsets[k, 1] + y
-        u[i, 0], u[i, 1] = u[b, 0] + x, u[b, 1] + y
+        i, b, x, y = rows[k], carrier[k], offsets[k, 0], offsets[k, 1]
+        if b != last:
+            last, sine, cosine = b, math.sin(u[b, 2]), math.cos(u[b, 2])
+            less = 2.0 * math.sin(0.5 * u[b, 2]) ** 2  # 1 - cosine, without cancellation at small turns
+        arms[k, 0], arms[k, 1] = cosine * x - sine * y, sine * x + cosine * y
+        u[i, 0], u[i, 1] = u[b, 0] + (-less * x - sine * y), u[b, 1] + (sine * x - less * y)
         if rigid[k]:
             u[i, 2] = u[b, 2]
 

@@ -50,6 +50,7 @@ class Status(StrEnum):
         }[self]
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
     """Common part of solutions and trajectories.
 
@@ -57,14 +58,25 @@ class Answer:
         status: whether the whole of it was reached.
         message: why it ended early ("" if it did not).
         bodies: places x, y and turn of each body by its name (S, 3) [m, m, rad].
+        shape: positions of the nodes (S, G, P, 2) [m].
+        states: reduced coordinates (S, size) [m, rad].
+        gravity_energy, work: of the weight, and of drives and loads since the first state (S,) [J].
+        counters: counted steps and iterations by name.
         history: residual norms of iterations.
+        seconds: "solve", of the solution alone [s].
         estimate: estimated error, if it was asked for.
     """
 
     status: Status
     message: str
     bodies: Mapping[str, Array]
+    shape: Array
+    states: Array
+    gravity_energy: Array
+    work: Array
+    counters: Mapping[str, int]
     history: Norms
+    seconds: Mapping[str, float]
     estimate: "ErrorEstimate | None" = None
 
     def __post_init__(self) -> None:
@@ -165,38 +177,27 @@ class StaticSolution(Answer):
     ((5,), (5, 3))
     """
 
-    status: Status
-    message: str
     inertia: Indices
     critical_points: tuple[CriticalPoint, ...]
     load_factor: Array
-    bodies: Mapping[str, Array]
     torque: Array
     stiffness: Array
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
     spring_energy: Array
-    gravity_energy: Array
-    work: Array
     prescribed: tuple[tuple[str, str], ...]
     reactions: Array
     tips: Mapping[str, Array]
     clamp_reactions: Array
     largest_stress: Array
     stations: Array
-    shape: Array
     axial_force: Array
     bending_moment: Array
     shear_force: Array
-    states: Array
     model: Model
     driven: str | None
     led: bool
-    counters: Mapping[str, int]
-    history: Norms
-    seconds: Mapping[str, float]
-    estimate: "ErrorEstimate | None" = None
 
     @property
     def reached(self) -> float:

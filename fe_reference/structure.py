@@ -90,14 +90,8 @@ class Structure:
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
         self.given = self.shear, self.elements.table, first, CURL_TABLE
         self.damped = bool(self.relaxation or self.links[3].any())
-        self.tables = (
-            self.given,
-            self.carried,
-            self._weight(),
-            self.links,
-            self.loads.pulls,
-            self.relaxation,
-        )
+        acting = self._weight(), self.links, self.loads.pulls
+        self.tables = (self.given, self.carried, *acting, self.relaxation)
         rows, many = len(self.numbers), len(first)
         viscous = np.zeros((many if self.relaxation else 0, 8, 8))
         #: what a motion writes: forces, ends, matrices and scratch of the elements, and curvature
@@ -117,9 +111,7 @@ class Structure:
         self.links = links_of(self.model, roots, self.relaxation, drag, points)
         self.loads = Loads.of(self.model, points)
         #: rows of the bodies' centres
-        self.centres = np.array(
-            [points.of(k, place) for k, place in enumerate(self.model.centres)], dtype=int
-        )
+        self.centres = np.array(list(map(points.of, range(len(self.points)), self.model.centres)), dtype=int)
         beyond = np.arange(len(points.carriers))
         rows = np.append(node, points.ground + 1 + beyond)
         bodies = np.append(self.nodes + carrier, np.array(points.carriers, dtype=np.int64))
