@@ -4,7 +4,7 @@ Data flow one way, and so do the imports:
 
     read -> strip, effects -> model; law, places, loads -> actions; these, matrix -> structure (with the mesh)
     structure -> control (with Newton's method) -> response (with critical points) -> path -> statics
-    structure -> mass, drives -> motion -> schemes -> dynamics
+    structure -> mass -> motion (with its drives) -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes
     plate: one strip as a plate, the stiffness that beam theory neglects, and its rigidity -> structure
 
@@ -16,18 +16,17 @@ forms, integrated and assembled by scikit-fem, give the same energy, forces and 
 rest; a test holds both elements to that.
 """
 
-from .drives import DrivenRotation
-from .dynamics import solve_motion, solve_release
-from .effects import DEFAULT_EFFECTS
-from .errors import ConvergenceError, InvalidParameter
+from .dynamics import solve_motion
+from .effects import DEFAULT_EFFECTS, DrivenRotation
 from .model import ELEMENTS, BodyDesign, Model, compliant_mechanism, cross_axis_pivot
 from .modes import Modes, natural_frequencies
 from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
+from .read import ConvergenceError, InvalidParameter
 from .response import CriticalPoint
 from .solid import SolidPath, SolidStrip, solve_solids
 from .solution import ErrorEstimate, StaticSolution, Status, StripFields, strip_fields
-from .statics import solve_mechanism, solve_statics
+from .statics import solve_statics
 from .strip import StripDesign
 
 __all__ = [
@@ -53,9 +52,7 @@ __all__ = [
     "cross_axis_pivot",
     "natural_frequencies",
     "plate_factors",
-    "solve_mechanism",
     "solve_motion",
-    "solve_release",
     "solve_solids",
     "solve_statics",
     "strip_fields",

@@ -1,9 +1,7 @@
-"""All that acts on the rows, compiled: elements, weights, links, loads, dampers, and explicit steps.
+"""All that acts on the rows, compiled: elements, weights, links, loads, and explicit steps.
 
-Every effect has its own table, of length zero where the scene does not name it. The dampers of the strips are
-
-    relaxation           relaxation time of the elements [s]: material tangent times velocity times it
-    drag (nodes,)        drag coefficient of the nodes [N s/m]
+Every effect has its own table, of length zero where the scene does not name it. With a relaxation time [s]
+the elements are viscous: they resist with material tangent times velocity times it.
 """
 
 from .arrays import Array, Indices, inlined, kernel
@@ -11,8 +9,8 @@ from .law import FORCES, MATERIAL, Energies, Given, Written, elements
 from .loads import Histories, Links, Pulls, link_forces, load_power, pull, put_factors
 from .places import Carried, carry, carry_velocity, gather, turned
 
-#: Elements, ends on bodies, weights, links, loads and dampers of a structure.
-Tables = tuple[Given, Carried, Pulls, Links, Pulls, tuple[float, Array]]
+#: Elements, carried rows, weights, links, loads and relaxation time of a structure.
+Tables = tuple[Given, Carried, Pulls, Links, Pulls, float]
 #: Displacements and velocities of all rows.
 State = tuple[Array, Array]
 
@@ -29,23 +27,21 @@ def resist(
         asked: FORCES, MATERIAL or TANGENT, as of `law.elements`; viscous strips resist with MATERIAL alone.
         state: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
         written: arrays that `law.elements` writes; in the first is the force (rows, 3) [N, N m].
-        curvature: second derivatives of the potential by turns (rows, 2) [N m], overwritten.
+        curvature: what the carrying of rows adds to the stiffness of turns (rows,) [N m], overwritten.
 
     Returns:
         Energies of the strips, of springs and of the full weight [J], work of the loads in full since rest
         [J], and the power that dampers take [W].
     """
-    (given, carried, weights, links, loads, (relaxation, drag)), (u, v), loss = tables, state, 0.0
+    (given, carried, weights, links, loads, relaxation), (u, v), loss = tables, state, 0.0
     bending, axial, shear = elements(given, share, asked, u, written)
     force = written[0]
     if asked == MATERIAL and relaxation > 0.0:
         loss += _viscous_forces(relaxation, given[2], written[2], v, force)
-    if len(drag) > 0:
-        loss += _drag_forces(drag, v, force)
-    gather(carried, u, force, curvature)
-    gravity = -pull(weights, share, u, force, curvature)
-    rooted, spring, lost = link_forces(links, u, v, force, curvature)
-    work = pull(loads, acts, u, force, curvature)
+    gravity = -pull(weights, share, u, force)
+    rooted, spring, lost = link_forces(links, u, v, force)
+    work = pull(loads, acts, u, force)
+    gather(carried, force, curvature)
     return (bending + rooted, axial, shear), spring, gravity, work, loss + lost
 
 
@@ -61,17 +57,6 @@ def _viscous_forces(relaxation: float, first: Indices, matrices: Array, v: Array
             total *= relaxation
             force[node, part] += total
             power += total * v[node, part]
-    return power
-
-
-@kernel()
-def _drag_forces(drag: Array, v: Array, force: Array) -> float:
-    """Add the drag of the nodes; return the power it takes [W]."""
-    power = 0.0
-    for i in range(len(drag)):
-        for k in range(2):
-            force[i, k] += drag[i] * v[i, k]
-            power += drag[i] * v[i, k] * v[i, k]
     return power
 
 
@@ -132,11 +117,12 @@ def advance(
         time, step: instant and step h [s].
         steps: number of steps.
     """
-    (_, carried, _, _, loads, (relaxation, drag)), force, (u, v) = tables, written[0], state
+    (_, carried, _, links, loads, relaxation), force, (u, v) = tables, written[0], state
     asked = MATERIAL if relaxation > 0.0 else FORCES
+    rated = relaxation > 0.0 or len(links[1]) + len(loads[0]) > 0  # what depends on velocities
     for n in range(steps):
-        if relaxation > 0.0 or len(drag) > 0:
-            carry_velocity(carried, u, v)
+        if rated:
+            carry_velocity(carried, v)
         put_factors(histories, time + n * step, loads[2])
         _, _, _, _, loss = resist(tables, 1.0, 1.0, asked, state, written, curvature)
         power = load_power(loads, v)
@@ -148,6 +134,8 @@ def advance(
             for k in range(3):
                 v[i, k] -= step * compliance[i, k] * force[i, k]
                 u[i, k] += step * v[i, k]
+        if len(loads[0]) > 0:
+            carry_velocity(carried, v)  # with the arms of the forces
         totals[0] += 0.5 * step * (power + load_power(loads, v))
         totals[1] += step * loss
         carry(carried, u)

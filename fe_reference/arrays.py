@@ -44,9 +44,3 @@ def _say_unkept() -> None:
 
 #: The same, compiled into its callers: what they do not use of it costs nothing there.
 inlined = partial(kernel, forceinline=True)
-
-
-def rotation_matrix(angle: float) -> Array:
-    """Return the matrix (2, 2) that turns a vector counter-clockwise by `angle` [rad]."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]])

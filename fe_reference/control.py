@@ -22,9 +22,9 @@ from scipy.linalg import null_space
 
 from .arrays import Array, Flags, Indices
 from .effects import factor_of, twice
-from .errors import InvalidParameter
 from .matrix import Factors, Singular
 from .places import FREE, GROUND
+from .read import InvalidParameter
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
@@ -43,9 +43,9 @@ class State:
 
     Attributes:
         y (size,), parameter: coordinates and where.
-        residual (size,): [N, N m]; on the held coordinates it is what the drives exert. at: the structure
-            there, whose tangent is d r / d y. potential: of all but loads that follow [J], without which its
-            gradient is r.
+        at: the structure there, whose gradient is the residual r, on the held coordinates what the drives
+            exert, and whose tangent is d r / d y. potential: of all but loads that follow [J], without which
+            its gradient is r.
         norms: of the residuals of Newton's method. failure: "" or why it ended. factors: of the tangent.
         rate: d y / d p (size,).
         conjugate, slope: first and second derivative of the total potential along the path [J].
@@ -53,12 +53,10 @@ class State:
         torque, stiffness: generalised force on the driven turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is driven.
         work: of loads and drives since the first state of the path [J].
-        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
     """
 
     y: Array
     parameter: float
-    residual: Array
     at: Evaluation
     potential: float
     norms: tuple[float, ...] = (0.0,)
@@ -71,7 +69,6 @@ class State:
     torque: float = np.nan
     stiffness: float = np.nan
     work: float = 0.0
-    behind: tuple[tuple[float, Array, Array], ...] = ()
 
     @property
     def inertia(self) -> int:
@@ -141,7 +138,7 @@ class Control:
         share, acts = parameter if self.settling else 1.0, self.share(parameter)
         at = self.structure.evaluate(y, share, load=self.load, acts=acts)
         potential = sum(at.strain) + at.spring + share * at.gravity - acts * at.work
-        return State(y=y, parameter=parameter, residual=at.gradient, at=at, potential=potential)
+        return State(y=y, parameter=parameter, at=at, potential=potential)
 
     def rates(self, y: Array, parameter: float) -> tuple[Array | None, Array | None, float, float]:
         """Return what p changes at fixed y: r and the gradient of the potential (size,), alike without
@@ -195,8 +192,8 @@ def spans(
     parameters = [leg / legs for leg in range(legs + 1)]
     shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if before else parameters
     ways: dict[int, Any] = {}
-    for at, (end, history) in led.items():
-        begin = factor_of(history, 0.0) if starts and history else 1.0
+    for at, (end, effect) in led.items():
+        begin = factor_of(effect.leads, 0.0) if starts and effect.leads else 1.0
         ways[structure.first_body + at] = np.multiply(shares, end * begin)
     if rotations is not None:
         if turn in ways:
@@ -227,7 +224,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         y[control.held] = control.prescribed(parameter)
         counters.update(residual_evaluations=1, tangent_evaluations=1)
         found, factors = control.balance(y, parameter), None
-        residual = np.where(control.is_held, 0.0, found.residual)
+        residual = np.where(control.is_held, 0.0, found.at.gradient)
         norms.append(float(np.abs(residual / structure.scale).max(initial=0.0)))
         failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
         if not failure:
@@ -238,7 +235,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
                 failure = str(error)
         if factors is None:
             break
-        last = factors.solve(found.residual)
+        last = factors.solve(found.at.gradient)
         size = structure.extent(last)
         done = size <= LAST or size > 0.5 * before
         if done:
@@ -291,8 +288,10 @@ def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
             place, on = model.rest[strip, -end], ground if there == GROUND else strips + int(there)
             resisted = 2 if model.strips[strip].hinges[end] else 3
             ties.append((motions(strip, place) - motions(on, place))[:resisted])
-    (roots, rows, _, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
-    for pair, stiffness in zip(rows[roots:] - structure.nodes, stiffnesses[roots:], strict=True):
+    (strip_links, rows, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
+    for pair, stiffness in zip(
+        structure.carriers[rows[strip_links:]] - structure.nodes, stiffnesses[strip_links:], strict=True
+    ):
         one, other = (motions(strips + b, centres[b]) for b in pair)
         ties.append((one - other)[stiffness > 0.0])
     points = enumerate(structure.points, start=strips)

@@ -8,7 +8,6 @@ has companions of twice as many.
 """
 
 from dataclasses import dataclass, replace
-from functools import cache
 from itertools import pairwise
 from math import ceil
 from time import perf_counter
@@ -18,13 +17,13 @@ import numpy as np
 
 from . import read
 from .arrays import Array
-from .drives import DrivenRotation, Span, drive_spans
-from .errors import ConvergenceError, InvalidParameter
-from .mass import about_mass_centre, carried_over
+from .effects import DrivenRotation
+from .mass import carried_over
 from .model import Model, require_model
 from .modes import first_frequency
-from .motion import Progress, Samples, Trajectory, course, trajectory
+from .motion import Progress, Trajectory, drive_spans, trajectory
 from .places import FREE
+from .read import ConvergenceError, InvalidParameter
 from .schemes import RADIUS, Explicit, Implicit
 from .solution import Status
 from .statics import settled_state
@@ -136,45 +135,6 @@ class Run(read.Checked):
             raise InvalidParameter("samples", samples, f"at most {most} samples of {size} coordinates [1]")
 
 
-def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
-    """Release the only body at rest from the static state at a rotation.
-
-    Parameters
-    ----------
-    pivot : Model
-    start : float, rad
-        Rotation at the release; None: no rotation is driven.
-    duration : float, s
-    options
-        Keywords of `solve_motion`.
-
-    Returns
-    -------
-    Trajectory
-        T records, the start first: time (T,), rotation (T,), energies (T,) and more.
-
-    Raises
-    ------
-    InvalidParameter, ConvergenceError
-        As in `solve_motion`.
-
-    References
-    ----------
-    Valentini and Pezzuti (2013), Fig 6.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
-
-    >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
-    >>> motion.time.shape
-    (6,)
-    """
-    require_model(pivot)
-    pivot.body_index(None)
-    return solve_motion(pivot, start=start, duration=duration, **options)
-
-
 def solve_motion(
     mechanism: Model, *, check: bool = True, raise_on_failure: bool = True, **asked: Any
 ) -> Trajectory:
@@ -231,53 +191,37 @@ def solve_motion(
     True
     """
     require_model(mechanism)
-    mechanism.effects.require_inertia()
+    mechanism.require_inertia()
     run, check = Run(**asked), read.flag("check", check)
     y, remark = np.zeros(structure_of(mechanism).size), ""
     if run.settled:
         y, remark = settled_state(mechanism, run.start, run.body, run.increments, starts=True)
-    samples, settings = _integrate(mechanism, y, run)
-    begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
     remarks = [f"the way to the start: {remark}"] if remark else []
-    motion = trajectory(samples, begin | settings, remarks).checked(raise_on_failure)
+    motion = _integrate(mechanism, y, run, remarks).checked(raise_on_failure)
     if not check or not run.settled:
         return motion
     return checked(mechanism, motion, start=run.start, body=run.body, drive=run.drive)
 
 
-def _integrate(model: Model, y: Array, run: Run) -> tuple[Samples, dict[str, float | str]]:
-    """Integrate from rest at y; return the samples and the settings."""
-    own, still = structure_of(model), np.zeros_like(y)
-    kind: type[Explicit | Implicit] = Explicit if run.explicit else Implicit
-
-    @cache
-    def scheme_of(led: tuple[int, ...]) -> Any:
-        return kind(*about_mass_centre(own, led))
-
-    home = scheme_of(()).structure
-    choices: dict[str, float] = {"spectral_radius": RADIUS}
-    longest = run.duration
-    if run.explicit:
-        free = Span(begin=0.0, end=0.0, rates={}, begins=False)
-        parts = {tuple(each.rates): each for each in (free, *drive_spans(model, run.drive, run.duration))}
-        limit = np.inf
-        for span in parts.values():
-            scheme = scheme_of(span.led)
-            for state in (y, still):
-                there, _ = carried_over(own, state, still, scheme.structure)
-                limit = min(limit, scheme.critical_step(there, span.held(scheme.structure)))
-        choices, longest = {"critical_step_s": limit, "safety": SAFETY}, SAFETY * limit
+def _integrate(model: Model, y: Array, run: Run, remarks: list[str]) -> Trajectory:
+    """Return the motion from rest at y."""
+    settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration}
+    parts, kind = drive_spans(model, run.drive, run.duration), Explicit if run.explicit else Implicit
+    scheme: Explicit | Implicit = kind(model, parts[0].led)
+    longest, chosen = run.duration, {"spectral_radius": RADIUS}
+    if isinstance(scheme, Explicit):
+        start, _ = carried_over(scheme.own, y, np.zeros_like(y), scheme.structure)
+        ways = {tuple(each.rates): each.held(scheme.structure) for each in parts}.values()
+        limit = min(scheme.critical_step(at, held) for held in ways for at in (start, np.zeros_like(y)))
+        longest, chosen = SAFETY * limit, {"critical_step_s": limit, "safety": SAFETY}
     elif run.step is None:
         longest = 1.0 / (STEPS_PER_PERIOD * first_frequency(model))
     h, steps = run.steps(longest)
     run.require_affordable(model, h, steps, y.size)
-    spans = drive_spans(model, run.drive, steps * h)
     began = perf_counter()
-    rest = carried_over(own, y, still, home)
-    samples = course(scheme_of, spans, *rest, h, run.chunks(steps), run.progress)
-    samples.seconds = perf_counter() - began
-    settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
-    return samples, settings | choices
+    scheme.follow(drive_spans(model, run.drive, steps * h), y, h, run.chunks(steps), run.progress)
+    begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
+    return trajectory(scheme, begin | settings | {"step_s": h} | chosen, perf_counter() - began, remarks)
 
 
 def checked(model: Model, motion: Trajectory, **held: Any) -> Trajectory:

@@ -4,17 +4,19 @@ A scene names its effects; what is not named is not assembled. Parameters are fr
 loads, drives, supports and springs a scene may have any number.
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields
-from typing import Annotated, Any, TypeVar
+from dataclasses import MISSING, dataclass, fields
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from . import read
-from .errors import InvalidParameter
+from .read import InvalidParameter
 
-#: The history of what does not change.
+#: The history of what does not change, and the begin and end of what acts throughout a motion [s].
 ALWAYS_FULL: read.History = ((0.0, 1.0),)
+ALWAYS = (0.0, math.inf)
 #: Coordinates of a body: those of its centre, and its turn.
 WAYS = ("x", "y", "rotation")
 
@@ -26,7 +28,13 @@ class Effect(read.Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class Several(Effect):
-    """An effect of which a model definition may have any number, each with its own parameters."""
+    """An effect of which a model definition may have any number, each with its own parameters.
+
+    Attributes:
+        body: what it acts on, by name; None: the only one.
+    """
+
+    body: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +49,6 @@ class Load(Several):
         at: point of the body (x, y) [m] at rest where the force acts, by default its centre.
     """
 
-    body: str | None = None
     strip: str | None = None
     history: Annotated[read.History, read.history] = ALWAYS_FULL
     force: Annotated[read.Pair, read.pair, "N"] = (0.0, 0.0)
@@ -70,11 +77,11 @@ class Prescribed(Several):
         fixed: coordinates, of WAYS, that stay, in a motion too.
     """
 
-    body: str | None = None
     history: Annotated[read.History | None, read.optional, read.history] = None
     displacement: Annotated[tuple[float | None, float | None] | None, read.optional, read.partly, "m"] = None
     angle: Annotated[float | None, read.optional, read.finite, "rad"] = None
     fixed: Annotated[tuple[str, ...] | None, read.optional, _ways] = None
+    held: ClassVar = ALWAYS
 
     @property
     def ends(self) -> tuple[float | None, ...]:
@@ -82,6 +89,63 @@ class Prescribed(Several):
         if self.fixed:
             return tuple(0.0 if way in self.fixed else None for way in WAYS)
         return *(self.displacement or (None, None)), self.angle
+
+    @property
+    def leads(self) -> read.History | None:
+        """How it goes on in a motion, None if it releases at the start."""
+        return ALWAYS_FULL if self.fixed else self.history
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivenRotation(read.Checked):
+    """The rotation of a body prescribed as an angle times the change of a history, from the current rotation.
+
+    A body that is re-clamped loses the velocity that the drive does not have.
+
+    Parameters
+    ----------
+    body : str, default None
+        None: the only one.
+    angle : float, rad
+    history : pairs of s and 1, default ((0, 1),)
+        Times and factors of the angle.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7.
+
+    Examples
+    --------
+    >>> DrivenRotation(angle=0.1, history=((0.0, 1.0), (0.01, 0.0)), held=(0.0, 0.02)).angle
+    0.1
+    """
+
+    body: str | None = None
+    angle: Annotated[float, read.finite, "rad"]
+    history: Annotated[read.History, read.history] = ALWAYS_FULL
+    held: tuple[float, float] = ALWAYS
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        begin, end = self.held
+        read.refuse(not begin < end, "held", self.held, "two instants, the first before the second [s]")
+
+    @property
+    def ends(self) -> tuple[None, None, float]:
+        """The turn [rad] that the body is led to (3,), None where it is free."""
+        return None, None, self.angle
+
+    @property
+    def leads(self) -> read.History:
+        """How it goes on in a motion."""
+        return self.history
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +160,6 @@ class Spring(Several):
         rotational_stiffness, rotational_damping: of the turns [N m/rad, N m s/rad].
     """
 
-    body: str | None = None
     other: str | None = None
     stiffness: Annotated[read.Pair, read.not_negatives, "N/m"] = (0.0, 0.0)
     rotational_stiffness: Annotated[float, read.not_negative, "N m/rad"] = 0.0
@@ -106,8 +169,7 @@ class Spring(Several):
     def __post_init__(self) -> None:
         super().__post_init__()
         own = (*self.stiffness, self.rotational_stiffness, *self.damping, self.rotational_damping)
-        if not any(own):
-            raise InvalidParameter("spring", self.body, "a stiffness or a damping above 0 [N/m]")
+        read.refuse(not any(own), "spring", self.body, "a stiffness or a damping above 0 [N/m]")
         if self.other is not None and self.other == self.body:
             raise InvalidParameter("other", self.other, "another body, or None for the ground [name]")
 
@@ -182,136 +244,84 @@ class RootCompliance(Effect):
     root: Annotated[float, _root_length] = MONOLITHIC
 
 
-#: Every effect that these elements can have.
-KNOWN: Mapping[str, type[Effect]] = {
-    "bending": Effect,
-    "stretching": Effect,
-    "strip_inertia": Effect,
-    "section_rotary_inertia": Effect,  # shear-deformable elements have it in any case
-    "body_inertia": Effect,
-    "gravity": Gravity,
-    "strip_damping": StripDamping,
-    "strip_drag": StripDrag,
-    "body_damping": BodyDamping,
-    "applied_force": Load,
-    "applied_moment": Load,
-    "tip_force": Load,
-    "driven_displacement": Prescribed,
-    "driven_rotation": Prescribed,
-    "support": Prescribed,
-    "spring": Spring,
-    "pre_strain": PreStrain,
-    "clamped_width": Effect,
-    "anticlastic": Effect,
-    "root_compliance": RootCompliance,
-    "shear": Effect,  # of shear-deformable elements, which have it in any case
-}
-#: Of effects that share a class: the parameters that are needed, and those that may be given.
-TAKES = {
-    "applied_force": (("force",), ("body", "history", "at", "follower")),
-    "applied_moment": (("moment",), ("body", "history")),
-    "tip_force": (("strip", "force"), ("history", "moment", "follower")),
-    "driven_displacement": (("displacement",), ("body", "history")),
-    "driven_rotation": (("angle",), ("body", "history")),
-    "support": (("fixed",), ("body",)),
+#: Every effect that these elements can have; of those that share a class, the parameters that are needed and
+#: those that may be given.
+KNOWN: Mapping[str, tuple[Any, ...]] = {
+    "bending": (Effect,),
+    "stretching": (Effect,),
+    "strip_inertia": (Effect,),
+    "section_rotary_inertia": (Effect,),  # shear-deformable elements have it in any case
+    "body_inertia": (Effect,),
+    "gravity": (Gravity,),
+    "strip_damping": (StripDamping,),
+    "strip_drag": (StripDrag,),
+    "body_damping": (BodyDamping,),
+    "applied_force": (Load, ("force",), ("body", "history", "at", "follower")),
+    "applied_moment": (Load, ("moment",), ("body", "history")),
+    "tip_force": (Load, ("strip", "force"), ("history", "moment", "follower")),
+    "driven_displacement": (Prescribed, ("displacement",), ("body", "history")),
+    "driven_rotation": (Prescribed, ("angle",), ("body", "history")),
+    "support": (Prescribed, ("fixed",), ("body",)),
+    "spring": (Spring,),
+    "pre_strain": (PreStrain,),
+    "clamped_width": (Effect,),
+    "anticlastic": (Effect,),
+    "root_compliance": (RootCompliance,),
+    "shear": (Effect,),  # of shear-deformable elements, which have it in any case
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
-T = TypeVar("T")
 #: Parameters of an effect, or of each one of several.
 Given = Mapping[str, Any] | Sequence[Mapping[str, Any]]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Effects:
-    """The named effects of one scene, in the order they were named: one of each name, or several."""
-
-    named: Mapping[str, tuple[Effect, ...]] = field(
-        default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, (Effect(),))
-    )
-
-    @classmethod
-    def read(cls, effects: Iterable[str], parameters: Mapping[str, Given]) -> "Effects":
-        """Return the effects of these names with their parameters.
-
-        Raises:
-            InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" missing,
-                rotary inertia of strips without inertia, parameters that are missing, unknown or of no named
-                effect, several sets of them for an effect that acts once.
-        """
-        names = tuple(effects)
-        for name in names:
-            read.choice("effects", name, tuple(KNOWN))
-        rotary = "section_rotary_inertia" not in names or "strip_inertia" in names
-        for holds, expected in (
-            (len(set(names)) == len(names), "every name once"),
-            ({"bending", "stretching"} <= set(names), "bending and stretching, which every element has"),
-            (rotary, "strip_inertia beside section_rotary_inertia"),
-        ):
-            if not holds:
-                raise InvalidParameter("effects", names, f"{expected} [name]")
-        if stray := [name for name in parameters if name not in names]:
-            expected = f"one of the named effects {', '.join(names)} [name]"
-            raise InvalidParameter("parameters", stray[0], expected)
-        return cls(named={name: tuple(_each(name, parameters.get(name, {}))) for name in names})
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names in order."""
-        return tuple(self.named)
-
-    def __contains__(self, name: str) -> bool:
-        return name in self.named
-
-    def require_inertia(self) -> None:
-        """Check that the effects give a motion inertia.
-
-        Raises:
-            InvalidParameter: a motion is asked for, but nothing in the model has inertia.
-        """
-        if not {"strip_inertia", "body_inertia"} & set(self.names):
-            raise InvalidParameter("effects", self.names, "strip_inertia or body_inertia for a motion [name]")
-
-    def every(self, kind: type[T]) -> list[T]:
-        """Return all effects of this class."""
-        return [each for same in self.named.values() for each in same if isinstance(each, kind)]
-
-    def find(self, kind: type[T]) -> T | None:
-        """Return the effect of this class, or None if it is not named."""
-        return next(iter(self.every(kind)), None)
+#: The named effects of one scene, in the order they were named: one of each name, or several.
+Named = Mapping[str, tuple[Effect, ...]]
 
 
-def index_of(bodies: Sequence[str], name: str | None) -> int:
-    """Return the place of a body among the names of all; None means the only one there is.
+def named(effects: Iterable[str], parameters: Mapping[str, Given]) -> Named:
+    """Return the effects of these names with their parameters.
 
     Raises:
-        InvalidParameter: the name is unknown, or None with several bodies.
+        InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" missing, rotary
+            inertia of strips without inertia, parameters that are missing, unknown or of no named effect,
+            several sets of them for an effect that acts once.
     """
-    known = ", ".join(bodies) or "no bodies"
-    if len(bodies) != 1 if name is None else name not in bodies:
-        raise InvalidParameter("body", name, f"one of {known} [name]")
-    return 0 if name is None else bodies.index(name)
+    names = tuple(effects)
+    for name in names:
+        read.choice("effects", name, tuple(KNOWN))
+    rotary = "section_rotary_inertia" not in names or "strip_inertia" in names
+    for holds, expected in (
+        (len(set(names)) == len(names), "every name once"),
+        ({"bending", "stretching"} <= set(names), "bending and stretching, which every element has"),
+        (rotary, "strip_inertia beside section_rotary_inertia"),
+    ):
+        read.refuse(not holds, "effects", names, f"{expected} [name]")
+    for name in parameters:
+        read.refuse(
+            name not in names, "parameters", name, f"one of the named effects {', '.join(names)} [name]"
+        )
+    return {name: tuple(_each(name, parameters.get(name, {}))) for name in names}
 
 
 def twice(bodies: Sequence[str], at: int) -> InvalidParameter:
-    """Return the refusal of a coordinate, numbered as in `Effects.prescribed`, that is prescribed twice."""
+    """Return the refusal of a coordinate, numbered as in `Model.prescribed`, that is prescribed twice."""
     told = f"{WAYS[at % 3]} of {bodies[at // 3]}"
     return InvalidParameter("prescribed", told, "one drive or support for each coordinate [name]")
 
 
 def _each(name: str, given: Given) -> Iterable[Effect]:
     """Yield the effects `name`, one for each set of parameters, refused by name if they are not its own."""
-    kind, every = KNOWN[name], [given] if isinstance(given, Mapping) else given
+    (kind, *takes), every = KNOWN[name], [given] if isinstance(given, Mapping) else given
     if every is given and not issubclass(kind, Several):
         raise InvalidParameter(name, given, "the parameters of one effect, which acts once [name]")
     if not every or not all(isinstance(each, Mapping) for each in every):
         raise InvalidParameter(name, given, "parameters, or a sequence of them, one for each [name]")
-    own = fields(kind)
-    needed, others = TAKES.get(name) or ([each.name for each in own if each.default is MISSING], ())
-    known = [*needed, *others] if name in TAKES else [each.name for each in own]
+    own = {each.name: each.default for each in fields(kind)}
+    needed, others = takes or ([key for key in own if own[key] is MISSING], own)
+    known = list(dict.fromkeys([*needed, *others]))
     for parameters in every:
         for key in parameters:
-            if key not in known:
-                raise InvalidParameter(name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
+            read.refuse(key not in known, name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
         if missing := [key for key in needed if parameters.get(key) is None]:
             raise InvalidParameter(name, dict(parameters), f"a value of {', '.join(missing)} [name]")
         yield kind(**parameters)

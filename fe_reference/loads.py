@@ -1,16 +1,13 @@
 """Loads: forces and moments on bodies and at free ends, and weights, in statics and while time passes.
 
-A dead force F at an offset o from the point of its row has the potential -F.(d + (R - 1) o), and so a moment
-and a stiffness that depend on the turn. A follower R F has no potential: its tangent is the product
--R' F (x) 1 of its rate in the turn and the turn's unit vector, which is not symmetric.
+They act on rows, as of `places`. A dead force F has the potential -F.u of the displacement of its row, and so
+does a moment. A follower R F has no potential: its tangent is the product -R' F (x) 1 of its rate in the turn
+and the turn's unit vector, which is not symmetric.
 
-Links are springs and dampers between two places: roots that give way, springs of a scene, dampers of bodies.
-A link between the points of two rows stretches by
-
-    e = (u_1 - u_2, theta_1 - theta_2)
-
-in axes of the ground, with u as in `places`. It resists with f = diag(k) e + diag(c) e'. The energy is
-e.diag(k) e / 2. At the root of a strip it is between the node and what carries it, for turns alone.
+Links are springs and dampers between two rows: roots that give way, drag of nodes, springs, dampers. With the
+difference e of displacements and turns a link resists with f = diag(k) e + diag(c) e', in axes of the ground.
+The energy is e.diag(k) e / 2. At the root of a strip it is between the node and what carries it, for turns
+alone.
 """
 
 from collections.abc import Sequence
@@ -21,26 +18,26 @@ import numpy as np
 from . import read
 from .arrays import Array, Indices, kernel
 from .effects import BodyDamping, Load, Spring
-from .matrix import Symmetric
 from .model import Model
-from .places import swept, turned
+from .places import Rows, turned
 
-#: Rows (K,) that loads act on; force x, y [N], moment [N m], offset of the point [m] and whether the force
-#: turns with it (K, 6); factors (K,), and room for the generalised forces (K, 3).
+#: Rows (K,) that loads act on; force x, y [N], moment [N m] and whether the force turns with the row (K, 4);
+#: factors (K,), and room for the forces (K, 3).
 Pulls = tuple[Indices, Array, Array, Array]
 #: Begins (K + 1,) of the histories of loads in instants [s] and factors (H,).
 Histories = tuple[Indices, Array, Array]
 
 
-def pulls_of(rows: Array | Indices, table: Array) -> Pulls:
+def pulls_of(rows: Sequence[int] | Indices, table: Sequence[tuple[float, ...]] | Array) -> Pulls:
     """Return loads on rows, in full.
 
     Args:
         rows: rows (K,) that the loads act on.
-        table: forces [N], moment [N m], offset of the point [m] and whether the force turns with it (K, 6).
+        table: forces [N], moment [N m] and whether the force turns with the row (K, 4).
     """
     many = len(rows)
-    return np.asarray(rows, dtype=np.int64), np.reshape(table, (many, 6)), np.ones(many), np.zeros((many, 3))
+    known = np.array(table, dtype=np.float64).reshape(many, 4)
+    return np.array(rows, dtype=np.int64), known, np.ones(many), np.zeros((many, 3))
 
 
 @kernel()
@@ -61,34 +58,26 @@ def put_factors(histories: Histories, time: float, out: Array) -> None:
 
 
 @kernel()
-def pull(pulls: Pulls, share: float, u: Array, force: Array, curvature: Array) -> float:
+def pull(pulls: Pulls, share: float, u: Array, force: Array) -> float:
     """Subtract a share of the loads from the resisting forces.
 
     Args:
-        pulls: rows, table, factors and generalised forces of K loads; the last are overwritten.
+        pulls: rows, table, factors and forces of K loads; the last are overwritten.
         share: part of the loads that acts [1].
         u: displacements of all rows (rows, 3) [m, rad].
         force: resisting forces (rows, 3) [N, N m], changed.
-        curvature: second derivatives of the potential by turns (rows, 2) [N m], added to.
 
     Returns:
         Work of all loads with a potential since rest [J]: followers have none.
     """
     (rows, table, factors, out), work = pulls, 0.0
     for k in range(len(rows)):
-        i, pulled, follows = rows[k], table[k], table[k, 5] > 0.0
+        i, pulled = rows[k], table[k]
         x, y, moment = factors[k] * pulled[0], factors[k] * pulled[1], factors[k] * pulled[2]
-        if not follows:
+        if pulled[3] > 0.0:
+            x, y = turned(u[i, 2], x, y)
+        else:
             work += x * u[i, 0] + y * u[i, 1] + moment * u[i, 2]
-        if follows or pulled[3] != 0.0 or pulled[4] != 0.0:
-            arm_x, arm_y = turned(u[i, 2], pulled[3], pulled[4])
-            if follows:
-                x, y = turned(u[i, 2], x, y)
-            else:
-                way = swept(u[i, 2], pulled[3], pulled[4])
-                work += x * way[0] + y * way[1]
-                curvature[i, 1] += share * (arm_x * x + arm_y * y)
-            moment += arm_x * y - arm_y * x
         out[k, 0], out[k, 1], out[k, 2] = x, y, moment
         force[i, 0] -= share * x
         force[i, 1] -= share * y
@@ -101,7 +90,7 @@ def load_power(pulls: Pulls, v: Array) -> float:
     """Return the power of loads in full at the velocities of all rows [W].
 
     Args:
-        pulls: K loads whose generalised forces (K, 3) [N, N m] are known, by `pull`.
+        pulls: K loads whose forces (K, 3) [N, N m] are known, by `pull`.
         v: velocities of all rows (rows, 3) [m/s, rad/s].
     """
     (rows, _, _, out), power = pulls, 0.0
@@ -120,23 +109,21 @@ class Loads:
     following: Indices
 
     @classmethod
-    def of(cls, model: Model, points: Array) -> "Loads":
-        """Return those of a model whose bodies are reduced about `points` (B, 2) [m]."""
+    def of(cls, model: Model, points: Rows) -> "Loads":
+        """Return those of a model on the rows of its nodes and `points` of its bodies."""
         rows, table, histories = [], [], list[read.History]()
-        for load in model.effects.every(Load):
+        for load in model.every(Load):
             if load.strip is not None:
-                row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)
+                rows.append((model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1)
             else:
                 k = model.body_index(load.body)
-                row, place = model.arcs.size + k, model.bodies[k].centre if load.at is None else load.at
-                offset = place - points[k]
-            rows.append(row)
-            table.append((*load.force, load.moment, *offset, load.follower))
+                rows.append(points.of(k, load.at or model.bodies[k].centre))
+            table.append((*load.force, load.moment, load.follower))
             histories.append(load.history)
         instants, factors = np.array([point for each in histories for point in each]).reshape(-1, 2).T.copy()
         begins = np.cumsum([0, *map(len, histories)])
-        pulls = pulls_of(np.array(rows), np.array(table))
-        following = np.flatnonzero((pulls[1][:, 5] > 0.0) & pulls[1][:, :2].any(axis=1))
+        pulls = pulls_of(rows, table)
+        following = np.flatnonzero((pulls[1][:, 3] > 0.0) & pulls[1][:, :2].any(axis=1))
         return cls(pulls=pulls, histories=(begins, instants, factors), following=following)
 
     def factors(self, time: float | None = None) -> Array | None:
@@ -151,145 +138,102 @@ class Loads:
         """Whether there are loads without a potential."""
         return len(self.following) > 0
 
-    def tangent(self, share: float, numbers: Indices, u: Array, size: int) -> tuple[Array, Array]:
-        """Return vectors (R, size), whose products a share of the loads that follow adds to the tangent.
+    def steepest(self, arms: Array) -> float:
+        """Return what no stiffness of turns by forces beside the points of bodies exceeds, over the inertia
+        [1/s^2].
 
-        numbers (rows, 3): coordinates. u (rows, 3): displacements and turns.
+        arms (rows,): of the rows, over the inertia of the bodies that carry them [1/(kg m)].
         """
-        rows, table, factors, _ = self.pulls
-        left, right = np.zeros((2, len(self.following), size))
-        for r, k in enumerate(self.following):
-            x, y = turned(u[rows[k], 2], *(share * factors[k] * table[k, :2]))
-            left[r, numbers[rows[k], :2]] = y, -x
-            right[r, numbers[rows[k], 2]] = 1.0
-        return left, right
-
-    def steepest(self, inertia: Array) -> float:
-        """Return what no stiffness of turns by forces beside the points of rows exceeds, over the inertia
-        (rows,) [1/s^2]."""
         (rows, table, _, _), (begins, _, factors), total = self.pulls, self.histories, 0.0
-        for k in np.flatnonzero(table[:, 3:5].any(axis=1)):
+        for k, row in enumerate(rows):
             largest = np.abs(factors[begins[k] : begins[k + 1]]).max()
-            total += float(largest * np.hypot(*table[k, :2]) * np.hypot(*table[k, 3:5]) / inertia[rows[k]])
+            total += float(largest * np.hypot(*table[k, :2]) * arms[row])
         return total
 
 
-#: How many of the links are roots, which come first; rows at both ends (K, 2), offsets of their points
-#: (K, 2, 2) [m], stiffness and damping (K, 3) for x, y and the turn.
-Links = tuple[int, Indices, Array, Array, Array]
+#: How many of the links are of strips, which come first; rows at both ends (K, 2), stiffness and damping
+#: (K, 3) for x, y and the turn.
+Links = tuple[int, Indices, Array, Array]
 Parts = tuple[float, float, float]
 
 
-def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]], relaxation: float) -> Links:
-    """Return the links of a model whose bodies are reduced about `points` (B, 2) [m].
+def links_of(
+    model: Model, soft: Sequence[tuple[int, int, float]], relaxation: float, drag: Array, points: Rows
+) -> Links:
+    """Return the links of a model between its nodes and `points` of its bodies.
 
     soft: of the roots that give way: node, row of what it is on, and stiffness [N m]. relaxation: their time
-    of relaxation [s].
+    of relaxation [s]. drag: of the nodes (nodes,), zero where there is none [N s/m].
     """
-    bodies, effects, found = len(model.bodies), model.effects, []
-    damper = effects.find(BodyDamping)
+    found: list[tuple[float, ...]] = []
     for node, row, stiffness in soft:
         if stiffness > 0.0:  # a hinge has none
-            found.append((node, row, *(0.0,) * 6, stiffness, 0.0, 0.0, relaxation * stiffness))
-    roots, offsets = len(found), np.vstack([model.centres - points, np.zeros((1, 2))])
-    every = [(model.body_index(each.body), each) for each in effects.every(Spring)]
+            found.append((node, row, 0.0, 0.0, stiffness, 0.0, 0.0, relaxation * stiffness))
+    for node in np.flatnonzero(drag).tolist():
+        found.append((node, points.ground, 0.0, 0.0, 0.0, drag[node], drag[node], 0.0))
+    strips, every = len(found), [(model.body_index(each.body), each) for each in model.every(Spring)]
+    damper = model.find(BodyDamping)
     if damper is not None and (damper.translation or damper.rotation):
         own = Spring(damping=(damper.translation,) * 2, rotational_damping=damper.rotation)
-        every += [(body, own) for body in range(bodies)]
+        every += [(body, own) for body in range(len(model.bodies))]
     for body, spring in every:
-        other = bodies if spring.other is None else model.body_index(spring.other)
+        other = None if spring.other is None else model.body_index(spring.other)
+        rows = points.of(body, model.centres[body]), points.of(other, model.centres[other or 0])
         stiff = (*spring.stiffness, spring.rotational_stiffness)
-        damping = (*spring.damping, spring.rotational_damping)
-        rows = model.arcs.size + body, model.arcs.size + other
-        found.append((*rows, *offsets[[body, other]].flat, *stiff, *damping))
-    table = np.reshape(np.array(found, dtype=np.float64), (-1, 12))
-    ends, arms, stiffnesses, viscous = (part.copy() for part in np.split(table, (2, 6, 9), axis=1))
-    return roots, ends.astype(np.int64), arms.reshape(-1, 2, 2), stiffnesses, viscous
+        found.append((*rows, *stiff, *spring.damping, spring.rotational_damping))
+    table = np.reshape(np.array(found, dtype=np.float64), (-1, 8))
+    ends, stiffnesses, viscous = (part.copy() for part in np.split(table, (2, 5), axis=1))
+    return strips, ends.astype(np.int64), stiffnesses, viscous
 
 
 @kernel()
-def link_forces(links: Links, u: Array, v: Array, force: Array, curvature: Array) -> Parts:
-    """Add the forces of links to forces and curvature at displacements and velocities.
+def link_forces(links: Links, u: Array, v: Array, force: Array) -> Parts:
+    """Add the forces of links at displacements and velocities.
 
     Args:
-        links: rows, offsets, stiffness and damping of K links.
+        links: rows, stiffness and damping of K links.
         u, v: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
         force: generalised forces (rows, 3) [N, N m], added to.
-        curvature: second derivatives of the energy by turns (rows, 2) [N m], added to.
 
     Returns:
-        Energy of the roots and of all other links [J], and the power that is lost [W].
+        Energy of the links of strips and of all others [J], and the power that is lost [W].
     """
-    (roots, ends, offsets, stiffness, damping), rooted, energy, loss = links, 0.0, 0.0, 0.0
+    (strips, ends, stiffness, damping), rooted, energy, loss = links, 0.0, 0.0, 0.0
     for k in range(len(ends)):
-        x = y = turn = x_rate = y_rate = turn_rate = 0.0
-        for end in range(2):
-            i, sign = ends[k, end], 1.0 - 2.0 * end
-            way = swept(u[i, 2], offsets[k, end, 0], offsets[k, end, 1])
-            arm = turned(u[i, 2], offsets[k, end, 0], offsets[k, end, 1])
-            x, y = x + sign * (u[i, 0] + way[0]), y + sign * (u[i, 1] + way[1])
-            x_rate += sign * (v[i, 0] - v[i, 2] * arm[1])
-            y_rate += sign * (v[i, 1] + v[i, 2] * arm[0])
-            turn, turn_rate = turn + sign * u[i, 2], turn_rate + sign * v[i, 2]
-        h, c = stiffness[k], damping[k]
-        force_x, force_y = h[0] * x + c[0] * x_rate, h[1] * y + c[1] * y_rate
-        moment = h[2] * turn + c[2] * turn_rate
-        stored = 0.5 * (h[0] * x * x + h[1] * y * y + h[2] * turn * turn)
-        if k < roots:
+        i, j, stored = ends[k, 0], ends[k, 1], 0.0
+        for p in range(3):
+            stretch, rate = u[i, p] - u[j, p], v[i, p] - v[j, p]
+            resisting = stiffness[k, p] * stretch + damping[k, p] * rate
+            force[i, p] += resisting
+            force[j, p] -= resisting
+            stored += 0.5 * stiffness[k, p] * stretch * stretch
+            loss += damping[k, p] * rate * rate
+        if k < strips:
             rooted += stored
         else:
             energy += stored
-        loss += c[0] * x_rate * x_rate + c[1] * y_rate * y_rate + c[2] * turn_rate * turn_rate
-        for end in range(2):
-            i, sign = ends[k, end], 1.0 - 2.0 * end
-            arm = turned(u[i, 2], offsets[k, end, 0], offsets[k, end, 1])
-            force[i, 0] += sign * force_x
-            force[i, 1] += sign * force_y
-            force[i, 2] += sign * (moment + arm[0] * force_y - arm[1] * force_x)
-            curvature[i, 1] -= sign * (arm[0] * force_x + arm[1] * force_y)
     return rooted, energy, loss
 
 
-def _slopes(links: Links, u: Array) -> Array:
-    """Return the derivatives of the stretches (K, 3, 6) by displacements and turns at both ends."""
-    found = np.zeros((len(links[1]), 3, 6))
-    for each, pair, arms in zip(found, links[1], links[2], strict=True):
-        for end, sign in enumerate((1.0, -1.0)):
-            x, y = turned(u[pair[end], 2], *arms[end])
-            each[:, 3 * end : 3 * end + 3] = sign * np.array([[1, 0, -y], [0, 1, x], [0, 0, 1]])
-    return found
-
-
-def add_links(links: Links, u: Array, constants: Array, whole: Symmetric) -> None:
-    """Add the matrix of stiffness [N/m, N m] or damping [N s/m, N m s] of links to a matrix.
+def link_matrices(constants: Array) -> Array:
+    """Return the matrices (K, 8, 8) [N/m, N m] or [N s/m, N m s] of links in the displacements of both rows.
 
     Args:
-        links: rows, offsets, stiffness and damping of K links.
-        u: displacements of all rows (rows, 3) [m, rad].
         constants: stiffness or damping (K, 3) in x, y and the turn.
-        whole: matrix (size, size) that is added to.
     """
-    for at, slope, own in zip(whole.pattern.links, _slopes(links, u), constants, strict=True):
-        np.add.at(whole.data, at[at >= 0], (slope.T * own @ slope)[at >= 0])
+    matrices, at = np.zeros((len(constants), 8, 8)), np.arange(3)
+    for one, other in ((at, at + 3), (at + 3, at)):
+        matrices[:, one, one], matrices[:, one, other] = constants, -constants
+    return matrices
 
 
-def between(links: Links, u: Array, one: Array, other: Array) -> float:
-    """Return the second derivative of the energy at fixed forces along two rates (rows, 3) [J]."""
-    first, second = (
-        np.einsum("kij,kj->ki", _slopes(links, u), rates[links[1]].reshape(-1, 6)) for rates in (one, other)
-    )
-    return float(np.sum(first * second * links[3]))
+def fastest(links: Links, constants: Array, light: Array, turning: Array) -> float:
+    """Return what no ratio of constants (K, 3) of links to masses exceeds [1/s^2 or 1/s], strips' excluded.
 
-
-def fastest(links: Links, constants: Array, mass: Array, inertia: Array) -> float:
-    """Return what no ratio of constants (K, 3) of links to masses and inertias (rows,) exceeds
-    [1/s^2 or 1/s], roots excluded.
-
-    It is the sum of the largest ratios of each link alone. At an arm o its end has the mass 1 / (1/m + o^2/J)
-    at least.
+    It is the sum of the largest ratios of each link alone. light, turning (rows,): the inverse of masses and
+    of moments of inertia.
     """
-    roots, ends, offsets, *_ = links
-    pairs, arms, own = (each[roots:] for each in (ends, offsets, constants))
-    light, turning = 1.0 / mass[pairs], 1.0 / inertia[pairs]
-    along = own[:, :2].max(axis=1, initial=0.0) * np.sum(light + turning * np.sum(arms**2, axis=2), axis=1)
-    return float(np.sum(along + own[:, 2] * np.sum(turning, axis=1)))
+    strips, ends, *_ = links
+    own, pairs = constants[strips:], ends[strips:]
+    along = own[:, :2].max(axis=1, initial=0.0) * light[pairs].sum(axis=1)
+    return float(np.sum(along + own[:, 2] * turning[pairs].sum(axis=1)))

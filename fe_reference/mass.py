@@ -28,7 +28,7 @@ import numpy as np
 
 from .arrays import Array
 from .matrix import Symmetric
-from .places import swept, turned
+from .places import turned
 from .structure import Structure
 
 MASSES = ("consistent", "lumped")
@@ -47,15 +47,10 @@ class RigidBodies:
     centre: Array
     moment_of_inertia: Array
 
-    def block(self, structure: Structure, body: int, turn: float) -> Array:
-        """Return the mass matrix (3, 3) of a body in its coordinates where it is turned [rad]."""
-        arm = turned(turn, *(self.centre[body] - structure.points[body]))
-        return _block(self.mass[body], arm, self.moment_of_inertia[body])
-
     def diagonal(self, structure: Structure) -> Array:
         """Return the lumped masses (size,) [kg, kg m^2] of a structure reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
-        return structure.gathered(np.vstack([_lumped_nodes(structure), carried, np.zeros(3)]))
+        return structure.gathered(np.vstack([_lumped_nodes(structure), carried]))
 
 
 def lumped_elements(structure: Structure) -> Array:
@@ -97,12 +92,12 @@ def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[St
     centrifugal terms in the equations of motion, which are exact. Bodies whose centre is `led` are reduced
     about that: at a constant velocity of it their moment of inertia about it is all that is left.
     """
-    (attached, rows, offsets, rigid), own = structure.carried, _own_inertia(structure)
-    nodes, centres = _lumped_nodes(structure)[attached], structure.model.centres
-    carried = rows - structure.nodes
-    carrier = np.append(carried, np.arange(len(own)))
-    masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid, own[:, 1])
-    places = np.vstack([offsets + structure.points[carried], centres])
+    (rows, carriers, _, rigid, _), own = structure.carried, _own_inertia(structure)
+    ends, centres = rows < structure.nodes, structure.model.centres
+    attached, carrier = rows[ends], np.append(carriers[ends] - structure.nodes, np.arange(len(own)))
+    nodes, rest = _lumped_nodes(structure)[attached], structure.model.rest.reshape(-1, 2)
+    masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid[ends], own[:, 1])
+    places = np.vstack([rest[attached], centres])
 
     def summed(values: Array) -> Array:
         return np.bincount(carrier, values, len(own)).astype(np.float64)
@@ -125,38 +120,31 @@ def carried_over(before: Structure, y: Array, v: Array, after: Structure) -> tup
         y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
     """
     y, v = y.copy(), v.copy()
-    for k in range(0 if after is before else len(before.points)):
-        at, offset = before.body_slice(k), after.points[k] - before.points[k]
-        (x_arm, y_arm), way = turned(y[at][2], *offset), swept(y[at][2], *offset)
-        y[at][:2] += way
-        v[at][:2] += -v[at][2] * y_arm, v[at][2] * x_arm
+    offsets = after.points - before.points
+    for place, rate, offset in zip(before.bodies(y), before.bodies(v), offsets, strict=True):
+        x_arm, y_arm = turned(place[2], *offset)
+        way = np.expm1(1j * place[2]) * complex(*offset)
+        place[:2] += way.real, way.imag
+        rate[:2] += -rate[2] * y_arm, rate[2] * x_arm
     return y, v
 
 
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     """Return the mass matrix (size, size) [kg, kg m, kg m^2] of strips and bodies at y, "consistent" or
     "lumped"."""
+    many, own = len(structure.elements.length), _own_inertia(structure)
+    blocks = np.zeros((len(structure.pairs), 8, 8))
+    structure.displacement(y)  # for the arms
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
-        masses = np.eye(6)[:, :, None] * lumped_elements(structure)
+        blocks[:many, range(6), range(6)] = lumped_elements(structure).T
     else:
-        masses = _consistent_elements(structure, y)
-    blocks = np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1)
-    whole = structure.reduced_matrix(blocks, structure.displacement(y))
-    for k, (mass, inertia) in enumerate(_own_inertia(structure)):
-        arm = turned(y[structure.turns[k]], *(structure.model.bodies[k].centre - structure.points[k]))
-        about = inertia + mass * (arm[0] ** 2 + arm[1] ** 2)
-        whole.data[structure.pattern.blocks[k]] += _block(mass, arm, about)
-    return whole
-
-
-def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
-    """Return the mass matrix (3, 3) of a body with its centre of mass at an arm [m] from its point."""
-    x, y = mass * arm[0], mass * arm[1]
-    return np.array([[mass, 0.0, -y], [0.0, mass, x], [-y, x, inertia]])
+        blocks[:many, :6, :6] = _consistent_elements(structure, y)
+    blocks[len(blocks) - len(own) :, range(3), range(3)] = own[:, [0, 0, 1]]
+    return structure.reduced_matrix(blocks)
 
 
 def _consistent_elements(structure: Structure, y: Array) -> Array:
-    """Return consistent masses (6, 6, E) of linear stretching and, in the frame of the chord, cubic bending;
+    """Return consistent masses (E, 6, 6) of linear stretching and, in the frame of the chord, cubic bending;
     of shear-deformable elements those of linear fields."""
     e, (places, weights) = structure.elements, np.polynomial.legendre.leggauss(4)
     x, l_0, one = 0.5 * (places[:, None] + 1.0), e.length, np.ones_like(e.length)
@@ -176,5 +164,5 @@ def _consistent_elements(structure: Structure, y: Array) -> Array:
     c, s = (chord := e.chord + (nodes[1] - nodes[0]).T) / np.hypot(*chord)
     turn = np.zeros_like(local)
     turn[:3, :3] = turn[3:, 3:] = [[c, s, 0.0 * c], [-s, c, 0.0 * c], [0.0 * c, 0.0 * c, one]]
-    masses: Array = np.einsum("kie,kle,lje->ije", turn, local, turn)
+    masses: Array = np.einsum("kie,kle,lje->eij", turn, local, turn)
     return masses

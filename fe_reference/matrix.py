@@ -18,7 +18,7 @@ from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
 from .arrays import Array, Flags, Indices, kernel
-from .places import Carried, turned
+from .places import Carried
 
 #: Where the entries of the rows of a matrix are, and where its factors have theirs.
 Lines = tuple[Indices, Indices, Indices, Indices]
@@ -32,26 +32,24 @@ class Singular(ArithmeticError):
 
 
 @kernel()
-def assemble(
-    matrices: Array, ends: Indices, carried: Carried, u: Array, places: Indices, data: Array
-) -> None:
-    """Add element matrices (E, 8, 8) [N/m, N, N m] to the entries `data` of a matrix.
+def assemble(matrices: Array, ends: Indices, carried: Carried, places: Indices, data: Array) -> None:
+    """Add matrices (E, 8, 8) [N/m, N, N m] between pairs of rows to the entries `data` of a matrix.
 
-    The contributions of body rotations at attached ends are added to the last two rows and columns, which are
+    The contributions of body rotations at carried rows are added to the last two rows and columns, which are
     zero.
 
     Args:
-        ends (E, 2): which attached node the ends are, or -1. u (rows, 3): displacements and turns.
-        places (E, 8, 8): of the entries in data, or -1.
+        ends (E, 2): which of the carried rows the ends are, or -1. places (E, 8, 8): of the entries in data,
+            or -1.
     """
-    _, carrier, offsets, _ = carried
+    arms = carried[4]
     for e in range(len(matrices)):
         matrix, many = matrices[e], 6
         for end in range(2):
             k, row, own = ends[e, end], 3 * end, 6 + end
             if k >= 0:
                 many = 8
-                x, y = turned(u[carrier[k], 2], offsets[k, 0], offsets[k, 1])
+                x, y = arms[k]
                 for j in range(8):
                     matrix[own, j] = x * matrix[row + 1, j] - y * matrix[row, j]
                 for j in range(8):
@@ -132,21 +130,20 @@ class Envelope:
 
     Attributes:
         size: of the matrices.
-        places (E, 8, 8), blocks (B, 3, 3), links (K, 6, 6), diagonal (size,): of the entries, -1 for none.
+        places (E, 8, 8), diagonal (size,): of the entries, -1 for none.
     """
 
-    def __init__(self, numbers: Indices, bodies: Indices, links: Indices, size: int) -> None:
-        """Take the coordinates of elements (E, 8), bodies (B, 3) and links (K, 6), -1 for none."""
-        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, links)]
-        indices = np.hstack([np.reshape(pair, (2, -1)) for pair in [*pairs, (every, every)]])
+    def __init__(self, numbers: Indices, size: int) -> None:
+        """Take the coordinates of the blocks (E, 8), -1 for none."""
+        every = np.arange(size)
+        i, j = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
+        indices = np.hstack([np.reshape((i, j), (2, -1)), (every, every)])
         indices = indices[:, (indices >= 0).all(axis=0)].astype(np.int32)
         summed = COOData(indices, np.ones(indices.shape[1]), (size, size), None).tocsr()
         summed.sort_indices()
         self.size, self.starts, self.rows = size, summed.indptr, summed.indices
         keys = np.repeat(every, np.diff(self.starts)) * size + self.rows
-        self.places, self.blocks, self.links = (
-            np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1) for i, j in pairs
-        )
+        self.places = np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1)
         self.diagonal = np.searchsorted(keys, every * (size + 1))
         self.first = np.minimum(self.rows[self.starts[:-1]], every).astype(np.int64) if size else every
         self.begin = np.concatenate([[0], np.cumsum(every - self.first)])[:-1]
@@ -154,12 +151,6 @@ class Envelope:
     def zero(self) -> "Symmetric":
         """Return a matrix of zeros."""
         return Symmetric(self, np.zeros(len(self.rows)))
-
-
-def _pairs(numbers: Indices) -> tuple[Indices, Indices]:
-    """Return rows and columns (n, k, k) of the entries of blocks with the coordinates (n, k)."""
-    rows, columns = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
-    return rows, columns
 
 
 @dataclass(eq=False)

@@ -8,31 +8,19 @@ is the one of two straight strips that cross without touching, and their body.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
+from . import effects as scene
 from . import read
-from .arrays import Array, Indices, rotation_matrix
-from .effects import (
-    ALWAYS_FULL,
-    CURL,
-    DEFAULT_EFFECTS,
-    SIDES,
-    Effects,
-    Given,
-    Load,
-    Prescribed,
-    PreStrain,
-    Spring,
-    index_of,
-    twice,
-)
-from .errors import InvalidParameter
+from .arrays import Array, Indices
 from .places import FREE, GROUND
+from .read import InvalidParameter
 from .strip import FIXED, StripDesign
 
 ELEMENTS = ("corotational", "reissner")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,20 +76,17 @@ class Model:
     bodies: tuple[BodyDesign, ...] = ()
     element: str = "corotational"
     elements: int = 20
-    effects: Effects = field(default_factory=Effects)
+    effects: scene.Named = field(default_factory=lambda: scene.named(scene.DEFAULT_EFFECTS, {}))
 
     def __post_init__(self) -> None:
         read.choice("element", self.element, ELEMENTS)
         if "shear" in self.effects and self.element == ELEMENTS[0]:
             raise InvalidParameter("element", self.element, f"{ELEMENTS[1]} for shear [name]")
         read.count("elements", self.elements)
-        if FIXED in self.body_names:
-            raise InvalidParameter("bodies", FIXED, "another name for a body that moves [name]")
+        read.refuse(FIXED in self.body_names, "bodies", FIXED, "another name for a body that moves [name]")
         for kind, names in (("strips", self.strip_names), ("bodies", self.body_names)):
-            if len(set(names)) != len(names):
-                raise InvalidParameter(kind, names, "names that differ [name]")
-        if not self.ends.size:
-            raise InvalidParameter("strips", self.strips, "one or more strips")
+            read.refuse(len(set(names)) != len(names), kind, names, "names that differ [name]")
+        read.refuse(not self.ends.size, "strips", self.strips, "one or more strips")
         if not (np.diff(self.arcs) > 0.0).all():
             raise InvalidParameter("strips", "ends that coincide", "elements of a length above 0 [m]")
         self._check_places()
@@ -109,27 +94,26 @@ class Model:
 
     def _check_places(self) -> None:
         """Refuse loads, springs and drives on what is not there."""
-        effects, bodies = self.effects, self.body_names
-        for load in effects.every(Load):
+        for load in self.every(scene.Load):
             if load.strip is None:
-                index_of(bodies, load.body)
+                self.body_index(load.body)
             elif self.ends[self.strip_index(load.strip), 1] != FREE:
                 raise InvalidParameter("tip_force", load.strip, "a strip whose tip is free [name]")
-        for spring in effects.every(Spring):
-            index_of(bodies, spring.body)
-            index_of(bodies, spring.other or spring.body)
-        led = effects.every(Prescribed)
-        if led and not bodies:
-            name = next(name for name, same in effects.named.items() if led[0] in same)
+        for spring in self.every(scene.Spring):
+            self.body_index(spring.body)
+            self.body_index(spring.other or spring.body)
+        led = self.every(scene.Prescribed)
+        if led and not self.bodies:
+            name = next(name for name, same in self.effects.items() if led[0] in same)
             raise InvalidParameter(name, "no bodies", "a body to lead [name]")
         # those that name no body are of the one that is driven, which only a solve knows
         self.prescribed(None, [each for each in led if each.body is not None])
 
     def _check_sides(self) -> None:
         """Refuse effects of the strips' sides where they do not hold."""
-        named = [name for name in SIDES if name in self.effects]
-        curl = [name for name in CURL if name in named]
-        natural = self.effects.find(PreStrain)
+        named = [name for name in scene.SIDES if name in self.effects]
+        curl = [name for name in scene.CURL if name in named]
+        natural = self.find(scene.PreStrain)
         if curl and natural is not None and natural.curvature:
             raise InvalidParameter(
                 curl[0], "natural curvature", "strips that are straight when free of stress"
@@ -185,31 +169,54 @@ class Model:
         return tuple(body.name for body in self.bodies)
 
     def body_index(self, name: str | None) -> int:
-        """Return the place of the body of this name; None means the only one there is."""
-        return index_of(self.body_names, name)
+        """Return the place of the body of this name; None means the only one there is.
 
-    def prescribed(
-        self, body: int | None, led: Sequence[Prescribed] | None = None
-    ) -> dict[int, tuple[float, read.History | None]]:
-        """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
+        Raises:
+            InvalidParameter: the name is unknown, or None with several bodies.
+        """
+        bodies = self.body_names
+        if len(bodies) != 1 if name is None else name not in bodies:
+            raise InvalidParameter("body", name, f"one of {', '.join(bodies) or 'no bodies'} [name]")
+        return 0 if name is None else bodies.index(name)
+
+    def every(self, kind: type[T]) -> list[T]:
+        """Return all effects of this class."""
+        return [each for same in self.effects.values() for each in same if isinstance(each, kind)]
+
+    def find(self, kind: type[T]) -> T | None:
+        """Return the effect of this class, or None if it is not named."""
+        return next(iter(self.every(kind)), None)
+
+    def require_inertia(self) -> None:
+        """Check that the effects give a motion inertia.
+
+        Raises:
+            InvalidParameter: a motion is asked for, but nothing in the model has inertia.
+        """
+        names = tuple(self.effects)
+        if not {"strip_inertia", "body_inertia"} & set(names):
+            raise InvalidParameter("effects", names, "strip_inertia or body_inertia for a motion [name]")
+
+    def prescribed(self, body: int | None, led: Sequence[Any] | None = None) -> dict[int, tuple[float, Any]]:
+        """Return what drives and supports prescribe: end [m, rad] of a coordinate, and by which of them.
 
         Coordinate k of body b stands under 3 b + k.
 
         Args:
             body: number of the body where the effects name none; None: the only one.
-            led: the drives and supports, by default all.
+            led: the drives and supports, by default all of the scene.
 
         Raises:
             InvalidParameter: a coordinate is prescribed twice, or a name is unknown.
         """
-        found: dict[int, tuple[float, read.History | None]] = {}
-        for effect in self.effects.every(Prescribed) if led is None else led:
+        found: dict[int, tuple[float, Any]] = {}
+        for effect in self.every(scene.Prescribed) if led is None else led:
             index = body if effect.body is None and body is not None else self.body_index(effect.body)
             for at, end in enumerate(effect.ends, start=3 * index):
                 if at in found and end is not None:
-                    raise twice(self.body_names, at)
+                    raise scene.twice(self.body_names, at)
                 if end is not None:
-                    found[at] = (end, ALWAYS_FULL if effect.fixed else effect.history)
+                    found[at] = end, effect
         return found
 
     def strip_index(self, name: str) -> int:
@@ -227,8 +234,8 @@ def compliant_mechanism(
     *,
     strips: Sequence[StripDesign],
     bodies: Sequence[BodyDesign] = (),
-    effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Given] | None = None,
+    effects: Sequence[str] = scene.DEFAULT_EFFECTS,
+    parameters: Mapping[str, scene.Given] | None = None,
     elements: int = 20,
     element: str = "corotational",
 ) -> Model:
@@ -272,12 +279,9 @@ def compliant_mechanism(
     >>> compliant_mechanism(strips=[strip], bodies=[tip], elements=8).elements
     8
     """
+    named = scene.named(effects, parameters or {})
     return Model(
-        strips=tuple(strips),
-        bodies=tuple(bodies),
-        element=element,
-        elements=elements,
-        effects=Effects.read(effects, parameters or {}),
+        strips=tuple(strips), bodies=tuple(bodies), element=element, elements=elements, effects=named
     )
 
 
@@ -290,8 +294,8 @@ def cross_axis_pivot(
     body_moment_of_inertia: float,
     centre_offset: Sequence[float] = (0.0, 0.0),
     orientation: float = 0.0,
-    effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Given] | None = None,
+    effects: Sequence[str] = scene.DEFAULT_EFFECTS,
+    parameters: Mapping[str, scene.Given] | None = None,
     elements: int = 20,
     element: str = "corotational",
     **section: Any,
@@ -356,7 +360,8 @@ def cross_axis_pivot(
     run, rise = length * np.cos(angle), length * np.sin(angle)
     ground = np.array([[0.0, 0.0], [2.0 * ratio * run, 0.0]])
     ends = ground + np.array([[run, rise], [-run, rise]])
-    turn = rotation_matrix(read.finite("orientation", orientation, "rad")).T
+    turned = read.finite("orientation", orientation, "rad")
+    turn = np.array([[np.cos(turned), np.sin(turned)], [-np.sin(turned), np.cos(turned)]])
     offset = np.array(read.pair("centre_offset", centre_offset, "m"))
     ground, ends, offset = ground @ turn, ends @ turn, offset @ turn
     centre = ends.mean(axis=0) + offset
@@ -367,11 +372,5 @@ def cross_axis_pivot(
         StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **section)
         for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
     ]
-    return compliant_mechanism(
-        strips=strips,
-        bodies=[body],
-        effects=effects,
-        parameters=parameters,
-        elements=elements,
-        element=element,
-    )
+    given: dict[str, Any] = {"effects": effects, "parameters": parameters}
+    return compliant_mechanism(strips=strips, bodies=[body], elements=elements, element=element, **given)

@@ -1,5 +1,6 @@
 """Natural frequencies and shapes of small motion about a static state: K x = omega^2 M x."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,12 +11,12 @@ from scipy.sparse.linalg import eigsh, splu
 from . import read
 from .arrays import Array, Flags
 from .control import NothingHolds, loose_coordinates
-from .effects import DEFAULT_EFFECTS, Effects
-from .errors import ConvergenceError, InvalidParameter
+from .effects import DEFAULT_EFFECTS
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
 from .places import GROUND
+from .read import ConvergenceError, InvalidParameter
 from .refined import Quantities, missed, refine
 from .solution import ErrorEstimate
 from .statics import settled_state
@@ -42,7 +43,7 @@ class Modes:
         frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi); 0 of a
             rigid motion.
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
-        body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
+        bodies: by name (C, 3): displacement of the centre of mass and rotation of a body, same scale.
         state (size,): reduced coordinates of the static state.
         estimate: of the frequencies' errors, where an accuracy was asked for; the rest is of the finest mesh.
 
@@ -60,7 +61,7 @@ class Modes:
     mass: str
     frequency: Array
     shapes: Array
-    body_shapes: Array
+    bodies: Mapping[str, Array]
     state: Array
     estimate: ErrorEstimate | None = None
 
@@ -131,12 +132,11 @@ def natural_frequencies(
     """
     require_model(pivot)
     kind = read.choice("mass", mass, MASSES)
-    pivot.effects.require_inertia()
+    pivot.require_inertia()
     if structure_of(pivot).loads.follows:
         expected = "a fixed direction for modes, as flutter is not modelled; `release` follows it [1]"
         raise InvalidParameter("follower", True, expected)
-    if rotation is None and held:
-        raise InvalidParameter("held", held, "a driven rotation to hold [1]")
+    read.refuse(rotation is None and held, "held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
         nonlocal count
@@ -149,18 +149,18 @@ def natural_frequencies(
         tangent = structure.evaluate(y, load=structure.loads.factors(time)).tangent
         at = None if body is None else model.body_index(body)
         # what a release keeps: what is led on, and a held turn
-        kept = [structure.first_body + k for k, (_, history) in model.prescribed(at).items() if history]
+        kept = [structure.first_body + k for k, (_, led) in model.prescribed(at).items() if led.leads]
         kept += [int(structure.turns[at or 0])] if held else []
         values, full = _lowest(structure, y, tangent, ~structure.flags(kept), kind, count)
         count = len(values)  # of finer meshes as many as of the first
-        moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
+        moves = np.array([structure.velocity(mode)[: structure.nodes, :2] for mode in full])
         return Modes(
             rotation=np.nan if rotation is None else float(rotation),
             held=held,
             mass=kind,
             frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
             shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
-            body_shapes=structure.bodies(full).reshape(len(full), -1),
+            bodies=dict(zip(model.body_names, structure.bodies(full).swapaxes(0, 1), strict=True)),
             state=y,
         )
 
@@ -175,8 +175,8 @@ def natural_frequencies(
 
 def first_frequency(model: Model) -> float:
     """Return the first frequency about the shape at rest, of inertia, elasticity and supports alone [Hz]."""
-    kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
-    bare = replace(model, effects=Effects(named=kept))
+    kept = {name: same for name, same in model.effects.items() if name in ELASTIC}
+    bare = replace(model, effects=kept)
     structure = structure_of(bare)
     rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
     clamped = (model.ends == GROUND).any()
@@ -258,6 +258,5 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
 
 def _available(wanted: int, available: int) -> int:
     """Return the wanted number of modes, or as many as there are; refuse a mesh without one."""
-    if not available:
-        raise InvalidParameter("count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
+    read.refuse(not available, "count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
     return min(read.count("count", wanted), available)

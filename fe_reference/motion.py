@@ -1,20 +1,28 @@
-"""A motion from span to span, whatever the scheme: its samples, where their energy comes from, its report."""
+"""A motion from span to span, whatever the scheme: its samples, where their energy comes from, its report.
+
+Histories are linear between their instants, so that a motion falls into spans on which every led coordinate
+goes at a constant rate. Held like that they need no multiplier: the body is reduced about the point that is
+led (`mass.about_mass_centre`), the led rows have no equation of motion, and what resists them is what the
+drive exerts. At the beginning of a span velocities change at once, by impulses of the drives alone.
+"""
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from .actions import couple, resist
 from .arrays import Array, Flags
-from .drives import Span
-from .errors import Norms
+from .effects import DrivenRotation, Prescribed, factor_of
 from .law import FORCES, MATERIAL
 from .loads import load_power, put_factors
-from .mass import RigidBodies, carried_over
+from .mass import about_mass_centre, carried_over, mass_matrix
+from .model import Model
+from .places import turned
 from .solution import Answer, Status
 from .structure import Structure, structure_of
 
@@ -28,6 +36,93 @@ FLOOR = 1e-12
 #: Energies of a state and what loads and dampers did until then [J], with their signs in what is conserved.
 ENERGIES = {"kinetic_energy": 1, "strain_energy": 1, "gravity_energy": 1, "work": -1, "dissipated": 1}
 SIGNS = np.array([*ENERGIES.values()])
+#: Instants nearer than this part of the motion are the same.
+SAME = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True)
+class Span:
+    """A part of a motion, `begin` to `end` [s], on which all drives go at constant rates.
+
+    Attributes:
+        rates: of coordinate k of body b, under 3 b + k [m/s, rad/s].
+        begins: whether a drive takes hold at its beginning.
+    """
+
+    begin: float
+    end: float
+    rates: Mapping[int, float]
+    begins: bool
+
+    @property
+    def led(self) -> tuple[int, ...]:
+        """The bodies whose centres are led."""
+        return tuple(sorted({at // 3 for at in self.rates if at % 3 < 2}))
+
+    def held(self, structure: Structure) -> Flags:
+        """Return which coordinates of a structure are led (size,)."""
+        return structure.flags([structure.first_body + at for at in self.rates])
+
+    def caught(self, structure: Structure, y: Array, v: Array) -> Array:
+        """Return velocities (size,) with the rates of the drives, all others as impulses of these leave them.
+
+        The mass of a body may be off the point that is led: an impulse there turns it.
+
+        Args:
+            structure: reduced model in whose coordinates the motion is.
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] before the impulse.
+        """
+        after, mass = v.copy(), mass_matrix(structure, y, "lumped")
+        for at, rate in self.rates.items():
+            after[structure.first_body + at] = rate
+        held = self.held(structure) | (mass.data[mass.pattern.diagonal] == 0.0)
+        # free coordinates take what keeps their momentum
+        after -= mass.factors(held).solve(mass.times(after - v))
+        return after
+
+    def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[tuple[float, float, int, bool]]:
+        """Yield the pieces of a motion whose samples are `chunks` of steps [s] apart.
+
+        Of each piece: begin and step [s], number of steps, and whether a sample is at its end.
+        Chunks within which a span begins or ends are cut there, in whole steps of their own.
+        """
+        close, done = SAME * step * sum(chunks), 0
+        for many in chunks:
+            low, high = step * done, step * (done + many)
+            done += many
+            begin, end = max(low, self.begin), min(high, self.end)
+            if end - begin >= high - low - close:
+                yield low, step, many, True
+            elif end - begin > close:
+                steps = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
+                yield begin, (end - begin) / steps, steps, end >= high - close
+
+
+def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
+    """Return the spans of a motion of `duration` [s], in order; without a drive, one free span.
+
+    Raises:
+        InvalidParameter: two drives of one coordinate.
+    """
+    every = [*model.every(Prescribed), *([drive] if drive else [])]
+    drives = {at: led for at, led in model.prescribed(None, every).items() if led[1].leads}
+    times = {duration}
+    for _, effect in drives.values():
+        times |= {*effect.held, *(time for time, _ in effect.leads)}
+    instants = [0.0]
+    for time in sorted(times):
+        if instants[-1] + SAME * duration < time <= duration:
+            instants.append(time)
+    spans: list[Span] = []
+    for begin, end in pairwise([*instants[:-1], duration]):
+        rates = {
+            at: (factor_of(led.leads, end) - factor_of(led.leads, begin)) / (end - begin) * target
+            for at, (target, led) in drives.items()
+            if led.held[0] < 0.5 * (begin + end) < led.held[1]
+        }
+        before = spans[-1].rates if spans else {}
+        spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))
+    return spans
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,21 +147,38 @@ class Instant:
 
 
 class Scheme:
-    """A way to integrate the motion of a structure reduced about the centres of mass of its `bodies`.
+    """A way to integrate the motion of a model, and the samples of the motion.
 
     Attributes:
+        own: the structure of the model. structure, bodies: about the centres of mass of its bodies; about the
+            centres of those that are `led`.
         blow_up: relative gain of energy that stops a motion. mass (size,): lumped. held (size,): what is led;
         inverse (size,): of the mass, zero where there is none and where it is led. off: bodies whose mass is
         off the point that is led.
+        time [s], y (size,), v (size,), energy (5,): of the samples, instants, coordinates and velocities of
+            the own structure, `ENERGIES`.
+        counters: counted steps and iterations by name. history: residual norms of implicit steps.
+        unstable: whether the motion was stopped because its energy blew up.
+        message: why and when the motion stopped early ("" if it did not).
+        books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
+            v.M v over implicit steps.
+        still: whether it starts at rest in equilibrium. stake: largest energy at stake so far [J].
+        floor: energy that is at stake in any motion [J]: what loads put into a rest is held against it.
     """
 
     blow_up = BLOW_UP
 
-    def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
-        self.structure, self.bodies = structure, bodies
-        self.mass, self.coupled = bodies.diagonal(structure), np.zeros((0, 7))
-        self.held = np.zeros(structure.size, dtype=bool)
-        self.off = np.flatnonzero((bodies.centre != structure.points).any(axis=1)).tolist()
+    def __init__(self, model: Model, led: Sequence[int] = ()) -> None:
+        self.own = structure_of(model)
+        self.structure, self.bodies = about_mass_centre(self.own, led)
+        self.mass, self.coupled = self.bodies.diagonal(self.structure), np.zeros((0, 7))
+        self.held = np.zeros(self.structure.size, dtype=bool)
+        self.off = np.flatnonzero((self.bodies.centre != self.structure.points).any(axis=1)).tolist()
+        self.time, self.y, self.v, self.energy = list[float](), list[Array](), list[Array](), list[Array]()
+        self.counters, self.history = Counter[str](), list[tuple[float, ...]]()
+        self.unstable, self.message, self.still = False, "", False
+        self.books, self.content = np.zeros((2, 2))
+        self.stake, self.floor = 0.0, FLOOR * self.structure.moment_unit
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
         """Return an instant with its consistent acceleration.
@@ -103,7 +215,7 @@ class Scheme:
             y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
             time: instant [s], which gives the factors of the loads.
         """
-        s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(y, v))
+        s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(v))
         put_factors(s.loads.histories, time, s.loads.pulls[2])
         asked = MATERIAL if s.relaxation else FORCES
         strain, spring, gravity, _, loss = resist(s.tables, 1.0, 1.0, asked, state, s.written, s.curvature)
@@ -111,18 +223,19 @@ class Scheme:
         power = load_power(s.loads.pulls, state[1])
         return Instant(time, y, v, s.gathered(s.written[0]), sum(strain) + spring, gravity, power, loss)
 
-    def go(self, now: Instant, step: float, steps: int, samples: "Samples") -> Instant | None:
+    def go(self, now: Instant, step: float, steps: int) -> Instant | None:
         """Return the instant after steps of equal length [s], or None where the motion stopped; books their
         work."""
         raise NotImplementedError
 
     def swing(self, y: Array, v: Array, ways: Flags) -> float:
         """Return the kinetic energy of masses that turn off led points moving in `ways` (size,) [J]."""
-        total = 0.0
-        for body in self.off:
-            at = self.structure.body_slice(body)
-            moved, coupling = np.where(ways, v, 0.0)[at], self.bodies.block(self.structure, body, y[at][2])[2]
-            total += float(v[at][2] * (coupling[:2] @ moved[:2]))
+        s, total = self.structure, 0.0
+        for k in self.off:
+            at = s.body_slice(k)
+            moved, spin = np.where(ways, v, 0.0)[at], v[at][2]
+            x, y_arm = turned(y[at][2], *(self.bodies.centre[k] - s.points[k]))
+            total += float(self.bodies.mass[k] * spin * (x * moved[1] - y_arm * moved[0]))
         return total
 
     def kinetic(self, y: Array, v: Array) -> float:
@@ -143,75 +256,37 @@ class Scheme:
         least = BALANCED * self.structure.scale + self.structure.round_off(tangent)
         return np.asarray(np.abs(at.force) <= least)
 
-    def remarks(self, samples: "Samples", step: float) -> list[str]:
+    def remarks(self, step: float) -> list[str]:
         """Return what the step [s] leaves unresolved: nothing where it is stable."""
         return []
 
-
-@dataclass(kw_only=True, eq=False)
-class Samples:
-    """States of a motion in the coordinates of its model at the sampled instants, the start first.
-
-    Attributes:
-        home: the scheme where no centre of a body is led, in whose coordinates the motion starts.
-        time [s], y (size,), v (size,), energy (5,): instants, coordinates, velocities, `ENERGIES`.
-        counters: counted steps and iterations by name. history: residual norms of implicit steps.
-        unstable: whether the motion was stopped because its energy blew up.
-        message: why and when the motion stopped early ("" if it did not).
-        books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
-            v.M v over implicit steps.
-        still: whether it starts at rest in equilibrium. stake: largest energy at stake so far [J].
-        seconds: that the steps took [s].
-    """
-
-    home: Scheme
-    time: list[float] = field(default_factory=list)
-    y: list[Array] = field(default_factory=list)
-    v: list[Array] = field(default_factory=list)
-    energy: list[Array] = field(default_factory=list)
-    counters: Counter[str] = field(default_factory=Counter)
-    history: list[tuple[float, ...]] = field(default_factory=list)
-    unstable: bool = False
-    message: str = ""
-    books: Array = field(default_factory=lambda: np.zeros(2))
-    content: Array = field(default_factory=lambda: np.zeros(2))
-    still: bool = False
-    stake: float = 0.0
-    seconds: float = 0.0
-
-    @property
-    def floor(self) -> float:
-        """Energy that is at stake in any motion [J]: what loads put into a rest is held against it."""
-        return FLOOR * self.home.structure.moment_unit
-
-    def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
+    def take(self, at: Instant, begun: float) -> bool:
         """Keep an instant if its energy is sound; otherwise note when it was lost.
 
         The gain is measured against the largest energy at stake before this sample. At constant rates drives
         do the work of what is beside the scheme's energy as well.
 
         Args:
-            scheme: scheme in whose coordinates the instant is.
             at: the instant.
             begun: energy beside the scheme's as the span began [J].
 
         Returns:
             Whether it was kept.
         """
-        work, kinetic = float(self.books[0]) + scheme.beside(at) - begun, scheme.kinetic(at.y, at.v)
+        work, kinetic = float(self.books[0]) + self.beside(at) - begun, self.kinetic(at.y, at.v)
         energy = np.array([kinetic, at.strain, at.gravity, work, float(self.books[1])])
         former = self.energy[-1] if self.energy else energy
         self.stake = max(self.stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
         start, now = (float(each @ SIGNS) for each in ((self.energy or [energy])[0], energy))
         at_stake = max(self.stake, abs(work), abs(at.gravity), self.floor)
-        if not np.isfinite(now) or now - start > self.home.blow_up * at_stake:
+        if not np.isfinite(now) or now - start > self.blow_up * at_stake:
             self.unstable = True
             self.message = (
                 f"the energy grew from {start:.6g} J to {now:.6g} J"
                 f" between {self.time[-1]:.6g} s and {at.time:.6g} s"
             )
             return False
-        y, v = carried_over(scheme.structure, at.y, at.v, structure_of(scheme.structure.model))
+        y, v = carried_over(self.structure, at.y, at.v, self.own)
         self.time.append(at.time)
         self.y.append(y)
         self.v.append(v)
@@ -224,49 +299,36 @@ class Samples:
         gain: Array = (balance - balance[0]) / (at_stake or np.inf)
         return gain
 
+    def follow(
+        self, spans: Sequence[Span], y: Array, step: float, chunks: Sequence[int], progress: Progress | None
+    ) -> None:
+        """Take the samples of a motion from rest through its spans.
 
-def course(
-    scheme_of: Callable[[tuple[int, ...]], Scheme],
-    spans: Sequence[Span],
-    y: Array,
-    v: Array,
-    step: float,
-    chunks: Sequence[int],
-    progress: Progress | None = None,
-) -> Samples:
-    """Return the samples of a motion through its spans.
-
-    Args:
-        scheme_of: the scheme for the bodies whose centres are driven; the scheme of no driven body has the
-            coordinates of y, v and the samples.
-        y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] at the start.
-        step: [s]. chunks: steps between samples.
-        progress: called as progress(done, total) after every sample.
-    """
-    scheme = scheme_of(())
-    samples = Samples(home=scheme)
-    for span in spans:
-        before, scheme = scheme.structure, scheme_of(span.led)
-        y, v = carried_over(before, y, v, scheme.structure)
-        caught = span.caught(scheme.structure, scheme.bodies, y, v)
-        gained = scheme.kinetic(y, caught) - scheme.kinetic(y, v)
-        # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
-        samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
-        now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
-        begun = scheme.beside(now)
-        if not samples.time:
-            samples.still = not caught.any() and bool(scheme.unloaded(now)[~scheme.held].all())
-            samples.take(scheme, now, begun)
-        for time, own, many, kept in span.pieces(step, chunks):
-            after = scheme.go(replace(now, time=time), own, many, samples)
-            if after is None or (kept and not samples.take(scheme, after, begun)):
-                return samples
-            now = after
-            if kept and progress is not None:
-                progress(len(samples.time) - 1, len(chunks))
-        samples.books[0] += scheme.beside(now) - begun
-        y, v = now.y, now.v
-    return samples
+        Args:
+            y: coordinates of the own structure (size,) [m, rad] at the start.
+            step: [s]. chunks: steps between samples.
+            progress: called as progress(done, total) after every sample.
+        """
+        y, v = carried_over(self.own, y, np.zeros_like(y), self.structure)
+        for span in spans:
+            caught = span.caught(self.structure, y, v)
+            gained = self.kinetic(y, caught) - self.kinetic(y, v)
+            # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
+            self.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
+            now = self.start(span.begin, y, caught, span.held(self.structure))
+            begun = self.beside(now)
+            if not self.time:
+                self.still = not caught.any() and bool(self.unloaded(now)[~self.held].all())
+                self.take(now, begun)
+            for time, own, many, kept in span.pieces(step, chunks):
+                after = self.go(replace(now, time=time), own, many)
+                if after is None or (kept and not self.take(after, begun)):
+                    return
+                now = after
+                if kept and progress is not None:
+                    progress(len(self.time) - 1, len(chunks))
+            self.books[0] += self.beside(now) - begun
+            y, v = now.y, now.v
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -302,27 +364,17 @@ class Trajectory(Answer):
     --------
     With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
-    >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
+    >>> motion = solve_motion(pivot, start=0.1, duration=1e-4, samples=5, check=False)
     >>> motion.bodies["body"].shape, motion.settings["integrator"]
     ((6, 3), 'central-difference')
     """
 
-    status: Status
-    message: str
     time: Array
-    bodies: Mapping[str, Array]
     rates: Mapping[str, Array]
     kinetic_energy: Array
     strain_energy: Array
-    gravity_energy: Array
-    work: Array
     dissipated: Array
-    shape: Array
-    states: Array
-    counters: Mapping[str, int]
     settings: Mapping[str, float | str]
-    history: Norms
-    seconds: Mapping[str, float]
     starts_still: bool = False
     resolution: str = ""
     rotation_error: float = math.nan
@@ -356,14 +408,15 @@ class Trajectory(Answer):
         }
 
 
-def trajectory(motion: Samples, settings: Mapping[str, float | str], remarks: list[str]) -> Trajectory:
+def trajectory(
+    motion: Scheme, settings: Mapping[str, float | str], seconds: float, remarks: list[str]
+) -> Trajectory:
     """Return the motion of all bodies from samples in the reduced coordinates [m, rad].
 
     Args:
-        settings: of the integrator, by names with units. remarks: on the start.
+        settings: of the integrator, by names with units. seconds: that the steps took. remarks: on the start.
     """
-    model = motion.home.structure.model
-    own, states = structure_of(model), np.array(motion.y)
+    own, states, model = motion.own, np.array(motion.y), motion.own.model
     places, rates = own.body_places(states), own.bodies(np.array(motion.v))
     moved = np.array([own.displacement(y)[: own.nodes, :2] for y in states])
     energies: dict[str, Any] = dict(zip(ENERGIES, np.array(motion.energy).T.copy(), strict=True))
@@ -380,7 +433,7 @@ def trajectory(motion: Samples, settings: Mapping[str, float | str], remarks: li
         counters=dict(motion.counters),
         history=tuple(motion.history),
         settings=settings,
-        seconds={"solve": motion.seconds},
+        seconds={"solve": seconds},
         starts_still=motion.still,
-        resolution="; ".join([*motion.home.remarks(motion, float(settings["step_s"])), *remarks]),
+        resolution="; ".join([*motion.remarks(float(settings["step_s"])), *remarks]),
     )

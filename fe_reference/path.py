@@ -22,8 +22,8 @@ from numpy.polynomial.legendre import leggauss
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
-from .errors import InvalidParameter
 from .matrix import GRAIN, Singular
+from .read import InvalidParameter
 from .response import CriticalPoint, critical_point, limit_point, respond, tipping
 
 Progress = Callable[[int, int], None]
@@ -72,10 +72,10 @@ class Path:
 
     Attributes:
         control: held coordinates and load of the span that is followed.
-        states: states of equilibrium, at their load factors [1].
+        states: states of equilibrium at the ends of increments, at their load factors [1].
+        trail: the last of them on the span that is followed, and at the ends of halved increments as well.
         counters: counted increments and iterations by name.
         failures: residual norms of the iterations of each increment that failed.
-        last: the last good state of a path that stopped, at its load factor [1].
         critical: the critical points that were passed.
         message: why the path stopped ("" if it did not).
         seconds: that following it took [s].
@@ -83,12 +83,12 @@ class Path:
 
     control: Control
     states: list[State] = field(default_factory=list)
+    trail: list[State] = field(default_factory=list)
     counters: Counter[str] = field(default_factory=Counter)
     failures: list[tuple[float, ...]] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
     message: str = ""
     seconds: float = 0.0
-    last: State = field(init=False)
 
     def begin(self, control: Control, y: Array | None = None) -> None:
         """Store the state of equilibrium in which a span begins, in place of the last one.
@@ -110,7 +110,8 @@ class Path:
             expected = "clamps that hold it, or stiffnesses less far apart [1]"
             raise InvalidParameter("strips", "a model that can move freely", expected) from error
         self.control = control
-        self.states.append(there if last is None else replace(there, work=last.work, norms=last.norms))
+        self.trail = [there if last is None else replace(there, work=last.work, norms=last.norms)]
+        self.states.append(self.trail[0])
 
     def settle(self, increments: int) -> None:
         """Go from rest to the equilibrium under gravity and natural strains, where its span begins.
@@ -135,11 +136,31 @@ class Path:
         Returns:
             Whether it was reached.
         """
-        reached = self._reach(self.states[-1], target, 0)
-        if reached is None:
-            self.critical += limit_point(self.control, self.last)
-            return False
-        self.states.append(reached)
+        ends, whole = [target], abs(target - self.states[-1].parameter)
+        while ends:
+            state = self.trail[-1]
+            step = abs(ends[-1] - state.parameter)
+            outcome = equilibrate(self.control, _ahead(self.trail, ends[-1]), ends[-1], self.counters)
+            failure = outcome.failure
+            if not failure:
+                reached = self._worked(state, respond(self.control, outcome))
+                failure = self._doubt(state, reached) or self._judged(state, reached)
+            if not failure:
+                self.critical += tipping(self.control, state, reached, self.counters)
+                self.trail = [*self.trail[1 - BACK :], reached]
+                ends.pop()
+                continue
+            self.failures.append(outcome.norms)
+            if step <= min(SMALLEST, 0.5**HALVINGS * whole):
+                ways = " and ".join(self.control.describe(at) for at in (state.parameter, ends[-1]))
+                halvings = f"{round(np.log2(whole / step))} halvings of the increment"
+                last = f"last residual {outcome.norms[-1]:.3g}"
+                self.message = f"{failure} between {ways} after {halvings}; {last}"
+                self.critical += limit_point(self.control, self.trail)
+                return False
+            self.counters["halvings"] += 1
+            ends.append(0.5 * (state.parameter + ends[-1]))
+        self.states.append(self.trail[-1])
         self.counters["increments"] += 1
         return True
 
@@ -150,29 +171,6 @@ class Path:
         if self.states[-1].inertia:
             told.append("the last state is unstable")
         return "; ".join(told)
-
-    def _reach(self, state: State, target: float, depth: int) -> State | None:
-        step = target - state.parameter
-        outcome = equilibrate(self.control, _ahead(state, target), target, self.counters)
-        failure = outcome.failure
-        if not failure:
-            reached = self._worked(state, respond(self.control, outcome))
-            failure = self._doubt(state, reached) or self._judged(state, reached)
-            if not failure:
-                self.critical += tipping(self.control, state, reached, self.counters)
-                return reached
-        self.failures.append(outcome.norms)
-        if depth >= HALVINGS and abs(step) <= SMALLEST:
-            self.last = state
-            self.message = (
-                f"{failure} between {self.control.describe(state.parameter)} and "
-                f"{self.control.describe(target)} after {depth} halvings of the increment; "
-                f"last residual {outcome.norms[-1]:.3g}"
-            )
-            return None
-        self.counters["halvings"] += 1
-        middle = self._reach(state, 0.5 * (state.parameter + target), depth + 1)
-        return None if middle is None else self._reach(middle, target, depth + 1)
 
     def _judged(self, before: State, after: State) -> str:
         """Return why a state is not on the branch of the one before, or ""; keep a critical point of them.
@@ -195,11 +193,11 @@ class Path:
         return ""
 
     def _worked(self, before: State, after: State) -> State:
-        """Return a state with the work done until then, and those before it."""
+        """Return a state with the work done until then."""
         # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
         done, former = (self.control.share(each.parameter) * each.at.work for each in (after, before))
         work = before.work + (done - former) + _integral(self.control, before, after)
-        return replace(after, work=work, behind=_trail(before))
+        return replace(after, work=work)
 
     def _doubt(self, before: State, after: State) -> str:
         """Return why a converged state is not believed, or ""."""
@@ -215,26 +213,22 @@ class Path:
         return ""
 
 
-def _trail(state: State) -> tuple[tuple[float, Array, Array], ...]:
-    """Return parameter, coordinates and rate of a state and of those before it, as many as are looked at."""
-    return ((state.parameter, state.y, state.rate), *state.behind)[:BACK]
-
-
-def _ahead(state: State, parameter: float) -> Array:
+def _ahead(trail: Sequence[State], parameter: float) -> Array:
     """Return the coordinates at a parameter by the polynomial through the last states and their rates.
 
     States that are too close for so long a step are not used: extrapolation would amplify their round-off.
     A step that was halved often is straight: next to a critical point the rest is round-off.
     """
-    step, back = abs(parameter - state.parameter), _trail(state)
+    state, back = trail[-1], trail[::-1]
+    step = abs(parameter - state.parameter)
     far = [k * CLOSEST * max(step, STRAIGHT) for k in range(len(back))]
-    known = [at for at, least in zip(back, far, strict=True) if abs(state.parameter - at[0]) >= least]
-    nodes = [node for node, _, _ in known for _ in range(2)]
-    column = [y for _, y, _ in known for _ in range(2)]
+    known = [at for at, least in zip(back, far, strict=True) if abs(state.parameter - at.parameter) >= least]
+    nodes = [at.parameter for at in known for _ in range(2)]
+    column = [at.y for at in known for _ in range(2)]
     guess, factor = state.y.copy(), 1.0
     for k in range(1, len(nodes)):
         column = [
-            known[i // 2][2]
+            known[i // 2].rate
             if nodes[i + k] == nodes[i]
             else (column[i + 1] - column[i]) / (nodes[i + k] - nodes[i])
             for i in range(len(nodes) - k)

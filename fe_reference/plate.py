@@ -54,8 +54,8 @@ from skfem.helpers import dd, ddot, trace
 
 from . import read
 from .arrays import Array
-from .errors import InvalidParameter
 from .law import TERMS
+from .read import InvalidParameter
 
 #: Halvings of the elements towards the corner, and elements a width along the rest of a narrow strip.
 LAYERS, ALONG = 6, 2
@@ -129,8 +129,7 @@ def plate_factors(width_ratio: float, poisson_ratio: float, *, halvings: int = 0
     1.0188 1.0445
     """
     read.positive("width_ratio", width_ratio, "1")
-    if not 0.0 <= poisson_ratio <= 0.5:
-        raise InvalidParameter("poisson_ratio", poisson_ratio, "a number between 0 and 0.5")
+    read.refuse(not 0.0 <= poisson_ratio <= 0.5, "poisson_ratio", poisson_ratio, "a number between 0 and 0.5")
     mesh = MeshTri.init_tensor(*_lines(0.5 / width_ratio)).refined(halvings)
     basis = Basis(mesh, _Argyris(), intorder=QUADRATURE)
     energy = BilinearForm(_energy).assemble(basis, nu=poisson_ratio)

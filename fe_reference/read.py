@@ -1,4 +1,4 @@
-"""Values that a user gives: each is read by its name, or refused in one line."""
+"""Values that a user gives: each is read by its name, or refused in one line; and a solve that stopped."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,10 +7,49 @@ from itertools import pairwise
 from numbers import Integral
 from typing import Any
 
-from .errors import InvalidParameter
-
+#: Residual norms of iterations, one tuple an attempt.
+Norms = tuple[tuple[float, ...], ...]
 Pair = tuple[float, float]
 History = tuple[Pair, ...]
+
+
+class InvalidParameter(ValueError):
+    """A parameter outside its domain; the message is one line "name: got X, expected Y [unit]".
+
+    Examples
+    --------
+    >>> try:
+    ...     BodyDesign(name="tip", centre=(0.1, 0.0), mass=-1.0)
+    ... except InvalidParameter as refusal:
+    ...     print(refusal)
+    mass: got -1.0, expected a number not below 0 [kg]
+    """
+
+    def __init__(self, name: str, got: object, expected: str) -> None:
+        super().__init__(name, got, expected)  # of which another process makes it again
+        self.name = name
+
+    def __str__(self) -> str:
+        name, got, expected = self.args
+        return f"{name}: got {got!r}, expected {expected}"
+
+
+class ConvergenceError(RuntimeError):
+    """A solve that stopped before its end.
+
+    Attributes:
+        solution: the converged part (`StaticSolution` or `Trajectory`), last good state last.
+        load_factor: fraction of the path (statics) or of the duration (dynamics) that was reached.
+        history: dimensionless residual norms, one tuple an attempt, those that failed last.
+    """
+
+    def __init__(
+        self, message: str, *, solution: Any = None, load_factor: float = 0.0, history: Norms = ()
+    ) -> None:
+        super().__init__(message)
+        self.solution = solution
+        self.load_factor = load_factor
+        self.history = history
 
 
 class Checked:
@@ -24,6 +63,16 @@ class Checked:
             read, *domain = getattr(each.type, "__metadata__", (None,))
             if read is not None:
                 object.__setattr__(self, each.name, read(each.name, getattr(self, each.name), *domain))
+
+
+def refuse(wrong: Any, name: str, got: object, expected: str) -> None:
+    """Refuse a value that is wrong.
+
+    Raises:
+        InvalidParameter: it is.
+    """
+    if wrong:
+        raise InvalidParameter(name, got, expected)
 
 
 def finite(name: str, value: Any, unit: str) -> float:
@@ -46,15 +95,13 @@ def finite(name: str, value: Any, unit: str) -> float:
 
 def positive(name: str, value: Any, unit: str) -> float:
     """Return `value` (in `unit`) as a float; InvalidParameter unless it is finite and above zero."""
-    if finite(name, value, unit) <= 0.0:
-        raise InvalidParameter(name, value, f"a number above 0 [{unit}]")
+    refuse(finite(name, value, unit) <= 0.0, name, value, f"a number above 0 [{unit}]")
     return float(value)
 
 
 def not_negative(name: str, value: Any, unit: str) -> float:
     """Return `value` (in `unit`) as a float; InvalidParameter unless it is finite and not below zero."""
-    if finite(name, value, unit) < 0.0:
-        raise InvalidParameter(name, value, f"a number not below 0 [{unit}]")
+    refuse(finite(name, value, unit) < 0.0, name, value, f"a number not below 0 [{unit}]")
     return float(value)
 
 
@@ -86,8 +133,7 @@ def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
 
 def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
     """Return `value`; InvalidParameter unless it is one of the names in `known`."""
-    if value not in known:
-        raise InvalidParameter(name, value, f"one of {', '.join(known)} [name]")
+    refuse(value not in known, name, value, f"one of {', '.join(known)} [name]")
     return str(value)
 
 
@@ -114,16 +160,14 @@ def several(name: str, value: Any, unit: str) -> list[float]:
         InvalidParameter: anything else, or an empty sequence.
     """
     parts = _parts(value)
-    if not parts:
-        raise InvalidParameter(name, value, f"at least one finite number [{unit}]")
+    refuse(not parts, name, value, f"at least one finite number [{unit}]")
     return [finite(name, part, unit) for part in parts]
 
 
 def pair(name: str, value: Any, unit: str) -> Pair:
     """Return `value` (2,) (in `unit`) as two floats; InvalidParameter unless it is two finite numbers."""
     parts = _parts(value)
-    if len(parts) != 2:
-        raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
+    refuse(len(parts) != 2, name, value, f"two finite numbers [{unit}]")
     return finite(name, parts[0], unit), finite(name, parts[1], unit)
 
 

@@ -200,49 +200,35 @@ def confirmed(
         return answer
     others = [each for each in solved if len(each.states[0]) != len(answer.states[0])]
     other = others[-1] if others else solve(finer(model))
-    points, elements = answer.critical_points, [each.model.elements for each in (answer, other)]
-    apart = _apart(points, other.critical_points)
+    points, pairs = answer.critical_points, (answer, other)
+    elements = [each.model.elements for each in pairs]
+    apart = [_apart(*both) for both in zip(points, other.critical_points, strict=False)]
+    known = int(np.argmax(np.append(np.array(apart) > SAME, True)))
+    same = known == len(points) == len(other.critical_points)
     # the whole path, or up to a limit point: stability is lost beyond its last state
     ends = answer.status is Status.CONVERGED or (points and points[-1].inertia > answer.inertia[-1])
-    if apart <= SAME and answer.status is other.status and ends:
-        told = f" ({elements[1]} elements have it within {max(apart, LEAST):.0e})"
+    if same and answer.status is other.status and ends:
+        told = f" ({elements[1]} elements have it within {max([*apart, LEAST]):.0e})"
         return replace(answer, message=answer.message + told if answer.message else "")
-    return _resolved(answer, other, elements)
-
-
-def _apart(mine: Sequence[CriticalPoint], others: Sequence[CriticalPoint]) -> float:
-    """Return the largest relative difference of critical points, inf if they are not of the same kinds."""
-    if [point.kind for point in mine] != [point.kind for point in others]:
-        return np.inf
-    places = [
-        np.nan_to_num([[p.load_factor, p.preload, p.rotation] for p in points]).reshape(-1, 3)
-        for points in (mine, others)
-    ]
-    size = np.maximum(np.abs(places).max(axis=0), (NOTHING, NOTHING, TURN))
-    return float((np.abs(places[0] - places[1]) / size).max(initial=0.0))
-
-
-def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[int]) -> StaticSolution:
-    """Return the states that both meshes have, and say where they part."""
-    kept, known = _alike(answer, other), 0
-    pairs = zip(answer.critical_points, other.critical_points, strict=False)
-    for mine, its in pairs:
-        if _apart([mine], [its]) > SAME:
-            break
-        known += 1
+    kept = _alike(answer, other)
     whole = answer.status is Status.CONVERGED and kept == len(answer.work)
-    ends = [_told(each, known) for each in (answer, other)]
-    most = 2 * max(elements)
-    message = (
-        f"not resolved with {elements[0]} elements: {ends[0]}; with {elements[1]}: {ends[1]}; "
-        f"take {most} elements"
-    )
+    mine, its = (_told(each, known) for each in pairs)
     return replace(
         answer.until(kept),
-        critical_points=answer.critical_points[:known],
+        critical_points=points[:known],
         status=Status.CONVERGED if whole else Status.NOT_CONVERGED,
-        message=message,
+        message=f"not resolved with {elements[0]} elements: {mine}; with {elements[1]}: {its}; "
+        f"take {2 * max(elements)} elements",
     )
+
+
+def _apart(mine: CriticalPoint, its: CriticalPoint) -> float:
+    """Return the largest relative difference of two critical points, inf if they are not of one kind."""
+    if mine.kind != its.kind:
+        return np.inf
+    places = np.nan_to_num([[p.load_factor, p.preload, p.rotation] for p in (mine, its)])
+    size = np.maximum(np.abs(places[0]), (NOTHING, NOTHING, TURN))
+    return float((np.abs(places[0] - places[1]) / size).max())
 
 
 def _told(answer: StaticSolution, known: int) -> str:

@@ -5,9 +5,8 @@ Critical points lie between or beyond the states of a path; they are named in wo
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -15,10 +14,8 @@ from .actions import Tables
 from .arrays import Array, Flags, kernel
 from .control import Control, State, equilibrate
 from .law import Written
-from .loads import between
 from .matrix import Singular, Symmetric
 from .model import Model
-from .places import turned
 from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
@@ -39,8 +36,8 @@ def respond(control: Control, found: State) -> State:
     moves = np.zeros((len(held), control.structure.size))
     moves[np.arange(len(held)), held] = 1.0
     moves -= factors.solve(tangent.times(moves))
-    left = factors.solve(found.residual)
-    drive, rate = (found.residual - tangent.times(left))[held], control.slope @ moves
+    left = factors.solve(found.at.gradient)
+    drive, rate = (found.at.gradient - tangent.times(left))[held], control.slope @ moves
     change, bent, first, second = control.rates(found.y, found.parameter)
     if change is not None and bent is not None:
         rate -= factors.solve(change)
@@ -69,11 +66,10 @@ def _stiffness_between(
     Nodes move far where elements strain little: the tangent times the rate loses the digits by which EA l^2
     exceeds EI. What is `left` to equilibrium (size,) takes the round-off of places out of the forces.
     """
-    u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
+    u, (v, w, rest) = structure.displacement(y), (structure.velocity(rate) for rate in (one, other, left))
     written = (structure.written[0], at.ends, at.matrices, structure.written[3])
     own = float(_between(structure.tables, u, v, w, rest, written))
-    own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (v[:, 2] * w[:, 2]))
-    return own + between(structure.links, u, v, w) if len(structure.links[1]) else own
+    return own + at.tangent.apart(one, other) + float(at.curvature @ (v[:, 2] * w[:, 2]))
 
 
 @kernel()
@@ -87,22 +83,26 @@ def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
 
 @kernel()
 def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
-    """Return the same of the elements and of the nodes on bodies; of what is written forces are scratch.
+    """Return the same of elements and links, and what the forces on carried nodes change with the rest.
+
+    Of what is written forces are scratch.
 
     With v the turn of an element's chord (x, y), its own change c = rate - v (-y, x, 1) strains it, and of
     the rest it is known that the force (X, Y) turns along. With w and d for the other rate it is
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    (_, table, first, _), (attached, carrier, offsets, _) = tables[0], tables[1]
+    (_, table, first, _), (rows, carrier, _, _, arms) = tables[0], tables[1]
+    _, pairs, constants, _ = tables[3]
     (force, ends, matrices, _), total = written, 0.0
     force[:] = 0.0
     for e in range(len(first)):
         i, h = first[e], matrices[e]
-        j, pull_x, pull_y = i + 1, ends[e, 0], ends[e, 1]
+        j, less_x, less_y = i + 1, 0.0, 0.0
         for k in range(3):
-            pull_x -= h[3, k] * left[i, k] + h[3, 3 + k] * left[j, k]
-            pull_y -= h[4, k] * left[i, k] + h[4, 3 + k] * left[j, k]
+            less_x += h[3, k] * left[i, k] + h[3, 3 + k] * left[j, k]
+            less_y += h[4, k] * left[i, k] + h[4, 3 + k] * left[j, k]
+        pull_x, pull_y = ends[e, 0] - less_x, ends[e, 1] - less_y
         x, y = table[e, 0] + (u[j, 0] - u[i, 0]), table[e, 1] + (u[j, 1] - u[i, 1])
         v, c = _strained(x, y, one, i)
         w, d = _strained(x, y, other, i)
@@ -111,12 +111,15 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
                 total += c[a] * h[2 + a, 2 + b] * d[b]
         total += w * (pull_x * c[2] - pull_y * c[1]) + v * (pull_x * d[2] - pull_y * d[1])
         total += v * w * (pull_x * x + pull_y * y)
-        force[i, 0], force[i, 1] = force[i, 0] - pull_x, force[i, 1] - pull_y
-        force[j, 0], force[j, 1] = force[j, 0] + pull_x, force[j, 1] + pull_y
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        x, y = turned(u[b, 2], offsets[k, 0], offsets[k, 1])
-        total -= one[b, 2] * other[b, 2] * (x * force[i, 0] + y * force[i, 1])
+        force[i, 0], force[i, 1] = force[i, 0] + less_x, force[i, 1] + less_y
+        force[j, 0], force[j, 1] = force[j, 0] - less_x, force[j, 1] - less_y
+    for k in range(len(rows)):
+        i, b = rows[k], carrier[k]
+        total -= one[b, 2] * other[b, 2] * (arms[k, 0] * force[i, 0] + arms[k, 1] * force[i, 1])
+    for k in range(len(pairs)):
+        i, j = pairs[k, 0], pairs[k, 1]
+        for p in range(3):
+            total += constants[k, p] * (one[i, p] - one[j, p]) * (other[i, p] - other[j, p])
     return total
 
 
@@ -254,33 +257,28 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 
-def _limits(control: Control, last: State) -> list[float]:
-    """Return what is left to a limit of the parameter after a state, by each two states behind each other.
+def limit_point(control: Control, trail: Sequence[State]) -> list[CriticalPoint]:
+    """Return the critical point that a path ran into right after the last of its states, if it did.
 
-    Next to a limit the parameter is short of it by the square of the way to it. So the square of the rate
-    there grows as one over the rest.
+    Next to a limit the parameter is short of it by the square of the way to it: the rate there grows as the
+    rest to the power -1/2, and the coordinates are off by twice the rate times the rest. It goes on there
+    along its tangent, at the same load. Next to a bifurcation from which an imperfection too small to be
+    followed leads away, the rate grows as the rest to the power -2.
     """
-    states = ((last.parameter, last.y, last.rate), *last.behind)
-    free = control.structure.measure * ~control.is_held
-    fast = [(parameter, float(np.sum((free * rate) ** 2))) for parameter, _, rate in states]
-    return [
-        p - last.parameter + (p - before) * slow / (size - slow) if size > slow else np.inf
-        for (p, size), (before, slow) in pairwise(fast)
-    ]
-
-
-def limit_point(control: Control, last: State) -> list[CriticalPoint]:
-    """Return the limit point that a path ran into right after its last state, if it did.
-
-    The coordinates are off by twice the rate times the rest. It goes on there along its tangent, at the same
-    load.
-    """
-    rest, *_ = _limits(control, last) or [np.inf]
-    if abs(rest) > NEAR:
+    if len(trail) < 2:
         return []
-    kind = "turning point" if control.turning else "limit point"
+    last, free = trail[-1], control.structure.measure * ~control.is_held
+    at = np.array([state.parameter for state in trail])
+    fast = np.array([np.linalg.norm(free * state.rate) for state in trail])
+    # powers of the rate that are straight in the parameter, and zero there
+    ends = [at[1:] - line[1:] * np.diff(at) / np.diff(line) for line in (fast**-2.0, fast**-0.5)]
+    leaves = bool(np.ptp(ends[1]) < np.ptp(ends[0]))  # the states tell its place better than that of a limit
+    rest = float(ends[leaves][-1]) - last.parameter
+    if not 0.0 < abs(rest) <= NEAR:
+        return []
+    kind = "bifurcation" if leaves else "turning point" if control.turning else "limit point"
     what = f"{kind}: {_moves(control, last.rate)}"
-    y, parameter = last.y + 2.0 * rest * last.rate, last.parameter + rest
+    y, parameter = last.y + (0.0 if leaves else 2.0 * rest) * last.rate, last.parameter + rest
     return [_point(control, kind, y, parameter, last.inertia + 1, what)]
 
 

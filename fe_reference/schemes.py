@@ -32,30 +32,31 @@ the strips stay in equilibrium with the bodies if they start there, and else rea
 Source: J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from .actions import advance
 from .arrays import Array, Flags
-from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .loads import fastest
-from .mass import RigidBodies, lumped_elements
+from .mass import lumped_elements
 from .matrix import Factors, Singular
-from .motion import Instant, Samples, Scheme
-from .structure import Structure
+from .model import Model
+from .motion import Instant, Scheme
+from .read import InvalidParameter
 
 
 class Explicit(Scheme):
-    """The scheme for one structure, reduced about the centres of mass of its `bodies`.
+    """The scheme for one structure, reduced about the centres of mass of its bodies.
 
     Raises:
         InvalidParameter: a coordinate without inertia, which no explicit step can follow.
     """
 
-    def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
-        super().__init__(structure, bodies)
+    def __init__(self, model: Model, led: Sequence[int] = ()) -> None:
+        super().__init__(model, led)
         if not np.all(self.mass > 0.0):
             expected = (
                 "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]"
@@ -79,19 +80,23 @@ class Explicit(Scheme):
         h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
         """
         s, links = self.structure, self.structure.links
-        mass, inertia = np.full((2, len(s.numbers)), np.inf)
-        mass[s.nodes : -1], inertia[s.nodes : -1] = self.bodies.mass, self.bodies.moment_of_inertia
-        square = self._highest(inertia, y, TANGENT)
-        square += float(np.max(s.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
-        square += s.loads.steepest(inertia) + fastest(links, links[3], mass, inertia)
-        for _, _, own, turning, *first, turn in self.couplings(held):
-            square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
-        decay = s.drag + fastest(links, links[4], mass, inertia)
+        light, turning, steep = np.zeros((3, len(s.numbers)))  # over masses and moments of inertia of rows
+        s.of_bodies(light)[:] = 1.0 / self.bodies.mass
+        s.of_bodies(turning)[:] = 1.0 / self.bodies.moment_of_inertia
+        rows, carriers, offsets, *_ = s.carried
+        arms, turning[rows] = np.hypot(*offsets.T), turning[carriers]
+        light[rows], steep[rows] = light[carriers] + arms**2 * turning[rows], arms * turning[rows]
+        square = self._highest(turning, y, TANGENT)
+        square += float(np.max(s.evaluate(y).curvature * turning, initial=0.0))
+        square += s.loads.steepest(steep) + fastest(links, links[2], light, turning)
+        for _, _, own, inertia, *first, turn in self.couplings(held):
+            square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * inertia)
+        decay = s.drag + fastest(links, links[3], light, turning)
         if s.relaxation:
-            decay += s.relaxation * self._highest(inertia, y, MATERIAL)
+            decay += s.relaxation * self._highest(turning, y, MATERIAL)
         return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
 
-    def _highest(self, inertia: Array, y: Array, asked: int) -> float:
+    def _highest(self, turning: Array, y: Array, asked: int) -> float:
         """Return a squared frequency [1/s^2] above those of all elements, and of roots that give way.
 
         A root of stiffness k between a node of the inertia m and a body of the inertia J is shared out
@@ -99,25 +104,25 @@ class Explicit(Scheme):
         the body.
         """
         s = self.structure
-        lumped, local = lumped_elements(s), s.evaluate(y, asked=asked).matrices[:, :6, :6]
-        (roots, ends, _, stiffness, _), last = s.links, s.stations - 1
+        lumped, (roots, ends, stiffness, _), last = lumped_elements(s), s.links, s.stations - 1
+        local = s.evaluate(y, asked=asked).matrices[: lumped.shape[1], :6, :6]
         (node, row), stiffness = ends[:roots].T, stiffness[:roots, 2]
         strip, place = np.divmod(node, last + 1)
         end = np.sign(place)
         element, turn = strip * last + end * (last - 1), 2 + 3 * end
-        ratio = np.sqrt(lumped[turn, element] / inertia[row])
+        ratio = np.sqrt(lumped[turn, element] * turning[row])
         local[element, turn, turn] += stiffness * (1.0 + ratio)
-        on_bodies = np.zeros(len(inertia))
+        on_bodies = np.zeros(len(turning))
         np.add.at(on_bodies, row, stiffness * ratio * (1.0 + ratio) / lumped[turn, element])
         root = np.sqrt(lumped).T
         highest = np.linalg.eigvalsh(local / (root[:, :, None] * root[:, None, :]))[:, -1].max()
         return float(highest + on_bodies.max())
 
-    def go(self, now: Instant, h: float, steps: int, samples: Samples) -> Instant:
+    def go(self, now: Instant, h: float, steps: int) -> Instant:
         """Return the instant after steps of h [s]."""
         s, totals = self.structure, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
-        state = s.displacement(now.y), s.velocity(now.y, late)
+        state = s.displacement(now.y), s.velocity(late)
         acting = s.tables, s.written, s.curvature, s.loads.histories
         drives = self.coupled, s.coordinates[self.held], s.spread(self.inverse)
         advance(*acting, *drives, state, totals, now.time, h, steps)
@@ -128,14 +133,14 @@ class Explicit(Scheme):
         # what the loop gathered is brought from mid-step to the sample
         led = float((after.force - now.force)[self.held] @ v[self.held])
         given = after.load_power - now.load_power + led
-        samples.books += totals
-        samples.books += 0.5 * h * given, h * (after.loss_power - now.loss_power)
-        samples.counters.update(steps=steps, force_evaluations=steps + 1)
+        self.books += totals
+        self.books += 0.5 * h * given, h * (after.loss_power - now.loss_power)
+        self.counters.update(steps=steps, force_evaluations=steps + 1)
         return replace(after, v=v, a=a)
 
-    def remarks(self, samples: Samples, step: float) -> list[str]:
+    def remarks(self, step: float) -> list[str]:
         """Return that the step [s], though stable, does not keep the energy."""
-        drift = float(np.abs(samples.gained()).max())
+        drift = float(np.abs(self.gained()).max())
         if drift <= DRIFT:
             return []
         return [f"the energy drifts by {drift:.1%}: the step of {step:.3g} s is too long: take a shorter one"]
@@ -163,14 +168,14 @@ COARSEST = 20.0
 
 
 class Implicit(Scheme):
-    """The scheme for a structure reduced about the centres of mass of its `bodies`."""
+    """The scheme for a structure reduced about the centres of mass of its bodies."""
 
     blow_up = GAIN
 
-    def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
-        super().__init__(structure, bodies)
-        rest = structure.evaluate(np.zeros(structure.size)).tangent
-        self.least = TOLERANCE * structure.scale + structure.round_off(rest)
+    def __init__(self, model: Model, led: Sequence[int] = ()) -> None:
+        super().__init__(model, led)
+        rest = self.structure.evaluate(np.zeros(self.structure.size)).tangent
+        self.least = TOLERANCE * self.structure.scale + self.structure.round_off(rest)
         self._factor: tuple[float, Factors] | None = None
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
@@ -187,43 +192,43 @@ class Implicit(Scheme):
         now = super().start(time, y, v, held)
         return replace(now, a=np.where(self.unloaded(now), 0.0, now.a))
 
-    def go(self, now: Instant, h: float, steps: int, samples: Samples) -> Instant | None:
+    def go(self, now: Instant, h: float, steps: int) -> Instant | None:
         """Return the instant after steps of h [s], or None where one has no solution."""
         begin = now.time
         for done in range(1, steps + 1):
-            after = self.step(now, h, samples)
+            after = self.step(now, h)
             if after is None:
-                samples.message = f"no solution of the step of {h:.3g} s at {now.time:.6g} s"
+                self.message = f"no solution of the step of {h:.3g} s at {now.time:.6g} s"
                 return None
             powers = np.array([self._powers(at) for at in (now, after)])
-            samples.books += 0.5 * h * powers.sum(axis=0)
-            samples.content += self.mass @ after.a**2, self.mass @ after.v**2
-            samples.counters["steps"] += 1
+            self.books += 0.5 * h * powers.sum(axis=0)
+            self.content += self.mass @ after.a**2, self.mass @ after.v**2
+            self.counters["steps"] += 1
             now = replace(after, time=begin + done * h)
         return now
 
-    def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:
+    def step(self, now: Instant, h: float, depth: int = 0) -> Instant | None:
         """Return the instant after h [s], in halved steps where needed; None if those fail too.
 
         A step that gains energy has found another solution of its equations, far from the motion.
         """
-        after = self._single(now, h, samples)
-        if after is not None and (depth == HALVINGS or not self._gains(now, after, h, samples)):
+        after = self._single(now, h)
+        if after is not None and (depth == HALVINGS or not self._gains(now, after, h)):
             return after
-        samples.counters["halvings"] += 1
+        self.counters["halvings"] += 1
         if depth == HALVINGS:
             return None
-        middle = self.step(now, 0.5 * h, samples, depth + 1)
-        return None if middle is None else self.step(middle, 0.5 * h, samples, depth + 1)
+        middle = self.step(now, 0.5 * h, depth + 1)
+        return None if middle is None else self.step(middle, 0.5 * h, depth + 1)
 
-    def _gains(self, now: Instant, after: Instant, h: float, samples: Samples) -> bool:
+    def _gains(self, now: Instant, after: Instant, h: float) -> bool:
         """Return whether a step of h [s] has gained energy, by more than stops a motion."""
         before, since = (self.kinetic(at.y, at.v) - self.beside(at) + at.strain for at in (now, after))
         work, lost = 0.5 * h * np.sum([self._powers(at) for at in (now, after)], axis=0)
         gain = since - before + after.gravity - now.gravity - work + lost
-        return not gain <= GAIN * max(samples.stake, samples.floor, before, abs(work))
+        return not gain <= GAIN * max(self.stake, self.floor, before, abs(work))
 
-    def _single(self, now: Instant, h: float, samples: Samples) -> Instant | None:
+    def _single(self, now: Instant, h: float) -> Instant | None:
         """Return the instant after one step of h [s], or None if the iteration does not converge."""
         mass, scale, time = self.mass, self.structure.scale, now.time + h
         coasting = now.y + h * now.v + h**2 * (0.5 - BETA) * now.a
@@ -238,26 +243,26 @@ class Implicit(Scheme):
             residual = (1.0 - AM) * mass * a + (1.0 - AF) * after.force + held
             residual[self.held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
-            samples.counters["force_evaluations"] += 1
+            self.counters["force_evaluations"] += 1
             if norms[-1] <= TOLERANCE:
                 return after
             if not np.isfinite(norms[-1]):
                 break
-            samples.counters["iterations"] += 1
+            self.counters["iterations"] += 1
             if self._factor is None or h != self._factor[0] or norms[-1] > SLOW * norms[-2]:
                 try:
-                    self._factor = h, self._factorise(y, time, h, samples)
+                    self._factor = h, self._factorise(y, time, h)
                 except Singular:
                     break
             change = self._factor[1].solve(residual)
             if (np.abs(residual) <= self.least).all() and self.structure.extent(change) <= SMALL:
                 return after
             a = a - change / reach
-        samples.history.append(tuple(norms[1:]))
+        self.history.append(tuple(norms[1:]))
         self._factor = None
         return None
 
-    def _factorise(self, y: Array, time: float, h: float, samples: Samples) -> Factors:
+    def _factorise(self, y: Array, time: float, h: float) -> Factors:
         """Return the factors of the tangent of a step of h [s] to y at an instant [s], kept for later steps.
 
         The derivative of damper forces with respect to position is neglected: the Newton iteration is a
@@ -269,7 +274,7 @@ class Implicit(Scheme):
         tangent.data *= 1.0 - AF
         tangent.left *= 1.0 - AF
         tangent.data[tangent.pattern.diagonal] += (1.0 - AM) / (BETA * h**2) * self.mass
-        samples.counters["factorisations"] += 1
+        self.counters["factorisations"] += 1
         return tangent.factors(self.held)
 
     def _powers(self, at: Instant) -> tuple[float, float]:
@@ -277,13 +282,13 @@ class Implicit(Scheme):
         led = float(at.force[self.held] @ at.v[self.held])
         return at.load_power + led, at.loss_power
 
-    def remarks(self, samples: Samples, step: float) -> list[str]:
+    def remarks(self, step: float) -> list[str]:
         """Return what the step h [s] leaves unresolved.
 
         The ratio of a.M a and v.M v, summed over the steps, is the mean square of the circular frequencies by
         their kinetic energy.
         """
-        remarks, content, lost = [], samples.content, -float(samples.gained()[-1])
+        remarks, content, lost = [], self.content, -float(self.gained()[-1])
         if content[0] * step**2 * COARSEST**2 > 4.0 * np.pi**2 * content[1]:
             each = 2.0 * np.pi * np.sqrt(content[1] / content[0]) / step
             remarks.append(f"only {each:.3g} steps in a mean period of what moves: take shorter steps")

@@ -34,7 +34,7 @@ from skfem.quadrature import get_quadrature
 
 from . import read
 from .arrays import Array, Indices
-from .errors import ConvergenceError, InvalidParameter
+from .read import ConvergenceError, InvalidParameter
 
 #: Elements with 20 and 27 nodes, the order of the quadrature that each of them needs, and how many times more
 #: elements a strip has along its length than over its thickness. With full integration it needs more of them.

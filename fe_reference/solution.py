@@ -12,10 +12,10 @@ import numpy as np
 
 from .arrays import Array, Indices
 from .effects import PreStrain
-from .errors import ConvergenceError, InvalidParameter, Norms
 from .law import FORCES
 from .model import Model, require_model
 from .places import FREE
+from .read import ConvergenceError, InvalidParameter, Norms
 from .response import CriticalPoint, body_stiffness
 from .structure import structure_of
 
@@ -50,6 +50,7 @@ class Status(StrEnum):
         }[self]
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
     """Common part of solutions and trajectories.
 
@@ -57,14 +58,25 @@ class Answer:
         status: whether the whole of it was reached.
         message: why it ended early ("" if it did not).
         bodies: places x, y and turn of each body by its name (S, 3) [m, m, rad].
+        shape: positions of the nodes (S, G, P, 2) [m].
+        states: reduced coordinates (S, size) [m, rad].
+        gravity_energy, work: of the weight, and of drives and loads since the first state (S,) [J].
+        counters: counted steps and iterations by name.
         history: residual norms of iterations.
+        seconds: "solve", of the solution alone [s].
         estimate: estimated error, if it was asked for.
     """
 
     status: Status
     message: str
     bodies: Mapping[str, Array]
+    shape: Array
+    states: Array
+    gravity_energy: Array
+    work: Array
+    counters: Mapping[str, int]
     history: Norms
+    seconds: Mapping[str, float]
     estimate: "ErrorEstimate | None" = None
 
     def __post_init__(self) -> None:
@@ -165,38 +177,27 @@ class StaticSolution(Answer):
     ((5,), (5, 3))
     """
 
-    status: Status
-    message: str
     inertia: Indices
     critical_points: tuple[CriticalPoint, ...]
     load_factor: Array
-    bodies: Mapping[str, Array]
     torque: Array
     stiffness: Array
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
     spring_energy: Array
-    gravity_energy: Array
-    work: Array
     prescribed: tuple[tuple[str, str], ...]
     reactions: Array
     tips: Mapping[str, Array]
     clamp_reactions: Array
     largest_stress: Array
     stations: Array
-    shape: Array
     axial_force: Array
     bending_moment: Array
     shear_force: Array
-    states: Array
     model: Model
     driven: str | None
     led: bool
-    counters: Mapping[str, int]
-    history: Norms
-    seconds: Mapping[str, float]
-    estimate: "ErrorEstimate | None" = None
 
     @property
     def reached(self) -> float:
@@ -403,7 +404,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     angle = _midpoints(np.unwrap(np.arctan2(chord[1], chord[0]), axis=1))
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
     axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
-    natural, length = model.effects.find(PreStrain) or PreStrain(), structure.elements.length.reshape(rows)
+    natural, length = model.find(PreStrain) or PreStrain(), structure.elements.length.reshape(rows)
     (area, inertia), modulus = _sections(model), [[strip.youngs_modulus] for strip in model.strips]
     bent = moment / (modulus * inertia)
     if structure.elements.plate[:, 0].any():  # where it is no multiple of the moment

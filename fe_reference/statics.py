@@ -20,47 +20,7 @@ from .structure import structure_of
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 
 
-def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
-    """Rotate the only body from 0 to `rotation`.
-
-    Parameters
-    ----------
-    pivot : Model
-    rotation : float or sequence of float, rad
-        End of the path, or ends of several legs.
-    options
-        Keywords of `solve_mechanism`.
-
-    Returns
-    -------
-    StaticSolution
-        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
-
-    Raises
-    ------
-    InvalidParameter, ConvergenceError
-        As in `solve_mechanism`.
-
-    References
-    ----------
-    Crisfield (1991), as in ``fe_reference.law``.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
-
-    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
-    >>> path.torque.shape
-    (6,)
-    >>> print(f"{path.torque[-1]:.4f} N m")
-    0.1634 N m
-    """
-    require_model(pivot)
-    pivot.body_index(None)
-    return solve_mechanism(pivot, rotation=read.several("rotation", rotation, "rad"), **options)
-
-
-def solve_mechanism(
+def solve_statics(
     mechanism: Model,
     *,
     body: str | None = None,
@@ -105,7 +65,7 @@ def solve_mechanism(
     Returns
     -------
     StaticSolution
-        S states; arrays as in `solve_statics`.
+        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
 
     Raises
     ------
@@ -123,7 +83,10 @@ def solve_mechanism(
     --------
     With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
-    >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
+    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
+    >>> print(f"{path.torque[-1]:.4f} N m")
+    0.1634 N m
+    >>> solve_statics(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
     [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_model(mechanism)
@@ -149,7 +112,7 @@ def settled_state(
     histories begin; then rigid motions that nothing resists are held until then, whatever it takes. Errors as
     above.
     """
-    structure, moved = structure_of(model), any(any(led.ends) for led in model.effects.every(Prescribed))
+    structure, moved = structure_of(model), any(any(led.ends) for led in model.every(Prescribed))
     ends = None if rotation is None else [read.finite("rotation", rotation, "rad")]
     if not rotation and structure.loads.factors() is None and not moved and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
@@ -181,13 +144,13 @@ def _solved(
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
     steps, structure = read.count("increments", increments), structure_of(model)
-    driven = rotations is not None or any(each.body is None for each in model.effects.every(Prescribed))
+    driven = rotations is not None or any(each.body is None for each in model.every(Prescribed))
     which = model.body_index(body) if driven or body is not None else None
     first = read.choice("order", order, ORDERS) == LOADS_FIRST
     controls = spans(structure, which, rotations, first=first, starts=starts)
     path = follow(controls, steps, progress)
     for state in () if starts else reversed(path.states):  # the load in full is named
-        require_balance(path.control, state.residual)
+        require_balance(path.control, state.at.gradient)
     shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
     driven_body = None if which is None else model.body_names[which]
     return _packed(path, np.array([0.0, *shares]), driven_body, rotations is not None)

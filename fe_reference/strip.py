@@ -9,7 +9,7 @@ import numpy as np
 
 from . import read
 from .arrays import Array
-from .errors import InvalidParameter
+from .read import InvalidParameter
 
 #: How an end of a strip is held on what it is on.
 JOINTS = ("clamp", "hinge")

@@ -16,7 +16,6 @@ stiffness.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -28,10 +27,10 @@ from .actions import resist
 from .arrays import Array, Flags, Indices
 from .effects import CURL, Gravity, PreStrain, RootCompliance, StripDamping, StripDrag
 from .law import CURL_TABLE, FORCES, MATERIAL, TANGENT, TERMS
-from .loads import Loads, Pulls, add_links, links_of, pull, pulls_of
+from .loads import Loads, Pulls, link_matrices, links_of, pull, pulls_of
 from .matrix import Envelope, Symmetric, assemble
 from .model import Model
-from .places import FREE, carry, carry_velocity
+from .places import FREE, Rows, carry, carry_velocity, gather, turned
 from .plate import left_in_elements
 
 
@@ -45,8 +44,8 @@ class Evaluation(NamedTuple):
         potential [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
-        matrices (E, 8, 8): tangents of the elements, none if they were not asked for. curvature (rows, 2):
-            what the carrying of nodes, and of weight, links and loads, adds to the stiffness of turns [N m].
+        matrices (E + K, 8, 8): tangents of the elements and of the K links, none if they were not asked for.
+        curvature (rows,): what the carrying of rows adds to the stiffness of turns [N m].
     """
 
     gradient: Array
@@ -70,14 +69,16 @@ class Structure:
 
     def __init__(self, model: Model, points: ArrayLike | None = None) -> None:
         self.model = model
-        self.basis = _strip_basis(model)
-        self.elements = Elements.of(model)
         self.shear = model.element == "reissner"
         self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
         self.strips, self.stations = model.arcs.shape
         #: rows of the nodes, from which on come those of the bodies and of the ground
         self.nodes = model.arcs.size
-        soft = self._number()
+        damping, drag = model.find(StripDamping), model.find(StripDrag)
+        #: relaxation time of the strips [s], and rate of their drag [1/s]
+        self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
+        self.basis, self.elements = _strip_basis(model), Elements(model)
+        self._number()
         self.length = float(model.lengths.max())
         rigidity = max(strip.flexural_rigidity for strip in model.strips)
         self.force_unit, self.moment_unit = rigidity / self.length**2, rigidity / self.length
@@ -87,59 +88,58 @@ class Structure:
         #: what changes of the coordinates are multiplied with to count in strip lengths and rad
         self.measure = np.where(self.axis == 2, 1.0, 1.0 / self.length)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
-        self.given = self.shear, self.elements.table(), first, CURL_TABLE
-        damping, drag = model.effects.find(StripDamping), model.effects.find(StripDrag)
-        #: relaxation time of the strips [s], and rate of their drag [1/s]
-        self.relaxation, self.drag = damping.relaxation_time if damping else 0.0, drag.rate if drag else 0.0
-        self.links = links_of(model, self.points, soft, self.relaxation)
-        self.loads = Loads.of(model, self.points)
-        dampers = self.relaxation, self.drag * self.nodal_masses() if self.drag else np.zeros(0)
-        self.damped = bool(self.relaxation or self.drag or self.links[4].any())
-        self.tables = (self.given, self.carried, self._weight(), self.links, self.loads.pulls, dampers)
-        rows, many = len(self.numbers), len(self.element_numbers)
+        self.given = self.shear, self.elements.table, first, CURL_TABLE
+        self.damped = bool(self.relaxation or self.links[3].any())
+        acting = self._weight(), self.links, self.loads.pulls
+        self.tables = (self.given, self.carried, *acting, self.relaxation)
+        rows, many = len(self.numbers), len(first)
         viscous = np.zeros((many if self.relaxation else 0, 8, 8))
         #: what a motion writes: forces, ends, matrices and scratch of the elements, and curvature
         self.written = (np.zeros((rows, 3)), np.zeros((many, 5)), viscous, np.zeros((4, 4)))
-        self.curvature, self._still = np.zeros((rows, 2)), np.zeros((rows, 3))
+        self.curvature, self._still = np.zeros(rows), np.zeros((rows, 3))
 
-    def _number(self) -> list[tuple[int, int, float]]:
-        """Number the reduced coordinates: those of rows (rows, 3), and of elements (E, 8).
-
-        -1 marks what is clamped. Returned is of the roots that give way: node, row of what it is on and
-        stiffness [N m].
-        """
+    def _number(self) -> None:
+        """Number rows and reduced coordinates; -1 marks a coordinate that is clamped, a row not carried."""
         grid, ends = np.arange(self.nodes).reshape(self.strips, -1), self.model.ends
         stiffness, at_ends = _root_stiffness(self.model), grid[:, [0, -1]]
-        end, strip = np.nonzero(ends.T >= 0)
-        node, carrier = at_ends[strip, end], ends[strip, end]
-        offsets = self.model.rest.reshape(-1, 2)[node] - self.points[carrier]
-        self.carried = (node, self.nodes + carrier, offsets, np.isinf(stiffness[strip, end]))
-        soft = np.isfinite(stiffness)
+        strip, end = np.nonzero(ends >= 0)
+        node, carrier, soft = at_ends[strip, end], ends[strip, end], np.isfinite(stiffness)
+        points = Rows(self.nodes, self.points)
+        carriers = np.where(ends[soft] >= 0, self.nodes + ends[soft], points.ground)
+        roots = list(zip(at_ends[soft], carriers, stiffness[soft], strict=True))
+        drag = self.drag * self.nodal_masses()
+        self.links = links_of(self.model, roots, self.relaxation, drag, points)
+        self.loads = Loads.of(self.model, points)
+        #: rows of the bodies' centres
+        self.centres = np.array(list(map(points.of, range(len(self.points)), self.model.centres)), dtype=int)
+        beyond = np.arange(len(points.carriers))
+        rows = np.append(node, points.ground + 1 + beyond)
+        bodies = np.append(self.nodes + carrier, np.array(points.carriers, dtype=np.int64))
+        offsets = np.vstack([self.model.rest.reshape(-1, 2)[node] - self.points[carrier], *points.offsets])
+        rigid = np.append(np.isinf(stiffness[strip, end]), beyond >= 0)
+        self.carried = (rows, bodies, offsets, rigid, offsets.copy())
         free = np.setdiff1d(grid, at_ends[ends != FREE])
         nodal = np.append(3 * free[:, None] + np.arange(3), 3 * at_ends[soft] + 2)
-        bodies = np.arange(3 * self.nodes, 3 * (self.nodes + len(self.points)))
         #: where in rows the coordinates are
-        self.coordinates, self.first_body = np.append(nodal, bodies), len(nodal)
-        self.size = len(self.coordinates)
+        self.coordinates = np.append(nodal, np.arange(3 * self.nodes, 3 * points.ground))
+        self.first_body, self.size = len(nodal), len(self.coordinates)
         self.turns = np.arange(self.first_body + 2, self.size, 3)
-        self.numbers = np.full((self.nodes + len(self.points) + 1, 3), -1, dtype=np.int64)
-        self.numbers[node] = self.turns[carrier, None] + np.arange(-2, 1)
+        self.numbers = np.full((points.ground + 1 + len(beyond), 3), -1, dtype=np.int64)
+        self.numbers[rows] = self.turns[bodies - self.nodes, None] + np.arange(-2, 1)
         self.numbers.reshape(-1)[self.coordinates] = np.arange(self.size)
-        self.ends, turns = np.full((2, self.strips, self.stations - 1, 2), -1)
-        place = (strip, end * (self.stations - 2), end)
-        self.ends[place], turns[place] = np.arange(len(node)), self.turns[carrier]
-        self.ends = self.ends.reshape(-1, 2)
-        own = self.numbers.ravel()[self.basis.element_dofs].T
-        self.element_numbers = np.hstack([own, turns.reshape(-1, 2)])
-        rows = np.where(ends[soft] >= 0, ends[soft], len(self.points)) + self.nodes
-        return list(zip(at_ends[soft], rows, stiffness[soft], strict=True))
+        #: which of the carried rows a row is, and the row that it goes with, else its own
+        self.places, self.carriers = np.full(len(self.numbers), -1), np.arange(len(self.numbers))
+        self.places[rows], self.carriers[rows] = np.arange(len(rows)), bodies
+        #: pairs of rows with a matrix between them: of elements, links, and of bodies with the ground
+        fixed = np.full(len(self.centres), points.ground)
+        self.pairs = np.vstack([self.basis.mesh.t.T, self.links[1], np.stack([self.centres, fixed], axis=1)])
+        self.ends = self.places[self.pairs]
 
     @cached_property
     def pattern(self) -> Envelope:
         """Where the entries of matrices in the reduced coordinates lie."""
-        bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
-        links = self.numbers[self.links[1]].reshape(-1, 6)
-        return Envelope(self.element_numbers, bodies, links, self.size)
+        turns = np.where(self.ends >= 0, self.numbers[self.carriers[self.pairs], 2], -1)
+        return Envelope(np.hstack([self.numbers[self.pairs].reshape(-1, 6), turns]), self.size)
 
     def bodies(self, y: Array) -> Array:
         """Return the part of the bodies (..., B, 3) of coordinates [m, rad] or velocities (..., size)."""
@@ -151,15 +151,12 @@ class Structure:
         Half of every element is at each of its nodes: an error of second order in the element length. What
         hangs on a clamp is not felt.
         """
-        gravity = self.model.effects.find(Gravity)
+        gravity = self.model.find(Gravity)
         if gravity is None:
-            return pulls_of(np.zeros(0), np.zeros((0, 6)))
-        (attached, carrier, offsets, _), own = self.carried, [body.mass for body in self.model.bodies]
-        masses = np.append(self.nodal_masses(), own)
-        rows, table = np.arange(len(masses)), np.zeros((len(masses), 6))
+            return pulls_of([], [])
+        masses = np.append(self.nodal_masses(), [body.mass for body in self.model.bodies])
+        rows, table = np.append(np.arange(self.nodes), self.centres), np.zeros((len(masses), 4))
         table[:, :2] = masses[:, None] * gravity.acceleration
-        table[self.nodes :, 3:5] = self.model.centres - self.points
-        rows[attached], table[attached, 3:5] = carrier, offsets
         free = self.numbers[rows, 0] >= 0
         return pulls_of(rows[free], table[free])
 
@@ -167,7 +164,7 @@ class Structure:
     def constant_words(self) -> str:
         """What of weight and natural strains acts, in words; "" where the shape at rest is in equilibrium."""
         acting = {"the weight": Gravity, "the natural strains": PreStrain}
-        return " and ".join(word for word, kind in acting.items() if self.model.effects.find(kind))
+        return " and ".join(word for word, kind in acting.items() if self.model.find(kind))
 
     def round_off(self, tangent: Symmetric) -> Array:
         """Return the residual [N, N m] of every coordinate below which round-off decides (size,).
@@ -178,6 +175,10 @@ class Structure:
         """
         terms = Symmetric(tangent.pattern, np.abs(tangent.data)).times(1.0 / self.measure)
         return np.asarray(4.0 * np.finfo(float).eps * terms)
+
+    def of_bodies(self, rows: Array) -> Array:
+        """Return what of values of rows (rows, ...) is of the bodies (B, ...), of any unit."""
+        return rows[self.nodes : self.nodes + len(self.points)]
 
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""
@@ -213,17 +214,21 @@ class Structure:
         carry(self.carried, full)
         return full
 
-    def velocity(self, y: Array, v: Array) -> Array:
-        """Return the rates of displacement and turn of all rows, (rows, 3) [m/s, rad/s]."""
+    def velocity(self, v: Array) -> Array:
+        """Return the rates of displacement and turn of all rows, (rows, 3) [m/s, rad/s].
+
+        The arms are those of the displacements that were evaluated last.
+        """
         full = self.spread(v)
-        carry_velocity(self.carried, self.spread(y), full)
+        carry_velocity(self.carried, full)
         return full
 
     def load_force(self, y: Array, load: Array, dead: bool = False) -> tuple[Array, float]:
         """Return generalised force and work [J] of loads times factors (K,), or of the dead ones."""
         force, (_, table, factors, _) = np.zeros((len(self.numbers), 3)), self.loads.pulls
-        factors[:] = load * (1.0 - table[:, 5]) if dead else load
-        work = pull(self.loads.pulls, -1.0, self.displacement(y), force, np.empty((len(force), 2)))
+        factors[:] = load * (1.0 - table[:, 3]) if dead else load
+        work = pull(self.loads.pulls, -1.0, self.displacement(y), force)
+        gather(self.carried, force, np.empty(len(force)))
         return self.gathered(force), work
 
     def evaluate(
@@ -233,46 +238,52 @@ class Structure:
 
         load (K,): factors of the loads, of which the share `acts` is in the gradient and in the tangent.
         """
-        many, tangent = len(self.element_numbers), self.pattern.zero()
+        many, tangent = len(self.elements.length), self.pattern.zero()
         matrices, ends = np.zeros((many if asked != FORCES else 0, 8, 8)), np.empty((many, 5))
         u, (force, _, _, scratch) = self.displacement(y), self.written
-        written, curvature = (force, ends, matrices, scratch), np.empty((len(u), 2))
+        written, curvature = (force, ends, matrices, scratch), np.empty(len(u))
         self.loads.pulls[2][:] = 0.0 if load is None else load
         found = resist(self.tables, share, acts, asked, (u, self._still), written, curvature)
         strain, spring, gravity, work, _ = found
-        if asked != FORCES:
-            tangent = self.reduced_matrix(matrices, u)
         if asked == TANGENT:
-            bodies = curvature[self.nodes : -1].sum(axis=1)
-            tangent.data[self.pattern.diagonal[self.turns]] += bodies
             if len(self.links[1]):
-                add_links(self.links, u, self.links[3], tangent)
+                matrices = np.concatenate([matrices, link_matrices(self.links[2])])
+            tangent = self.reduced_matrix(matrices)
+            tangent.data[self.pattern.diagonal[self.turns]] += self.of_bodies(curvature)
             if load is not None and self.loads.follows:
-                tangent.left, tangent.right = self.loads.tangent(acts, self.numbers, u, self.size)
+                tangent.left, tangent.right = self._following(acts, u)
         gradient = self.gathered(force)
         return Evaluation(gradient, tangent, strain, spring, gravity, work, ends, matrices, curvature)
 
-    def reduced_matrix(self, matrices: Array, u: Array) -> Symmetric:
-        """Return element matrices (E, 8, 8) [N/m, N, N m] assembled as P^T K P (size, size).
+    def _following(self, acts: float, u: Array) -> tuple[Array, Array]:
+        """Return vectors (R, size), whose products a share of the loads that follow adds to the tangent."""
+        rows, table, factors, _ = self.loads.pulls
+        left, right = np.zeros((2, len(self.loads.following), self.size))
+        for r, k in enumerate(self.loads.following):
+            row, place = rows[k], self.places[rows[k]]
+            x, y = turned(u[row, 2], *(acts * factors[k] * table[k, :2]))
+            left[r, self.numbers[row, :2]] = y, -x
+            if place >= 0:  # the turn of the force less that of its arm, which is in the curvature
+                left[r, self.numbers[row, 2]] = -float(self.carried[4][place] @ (x, y))
+            right[r, self.numbers[row, 2]] = 1.0
+        return left, right
+
+    def reduced_matrix(self, matrices: Array) -> Symmetric:
+        """Return matrices (M, 8, 8) [N/m, N, N m] of the first pairs assembled as P^T K P (size, size).
+
+        The arms are those of the displacements that were evaluated last.
 
         Args:
-            matrices: element matrices, of stiffness or damping. See `assemble`.
-            u: displacements of all rows (rows, 3) [m, rad].
+            matrices: of stiffness, damping or mass. See `assemble`.
         """
         whole = self.pattern.zero()
-        assemble(matrices, self.ends, self.carried, u, self.pattern.places, whole.data)
+        assemble(matrices, self.ends, self.carried, self.pattern.places, whole.data)
         return whole
 
     def damping_matrix(self, y: Array) -> Symmetric:
         """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""
-        local, u = np.zeros((len(self.element_numbers), 8, 8)), self.displacement(y)
-        if self.relaxation:
-            local += self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
-        half = 0.5 * self.drag * self.elements.linear_density * self.elements.length
-        local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]
-        whole = self.reduced_matrix(local, u)
-        add_links(self.links, u, self.links[4], whole)
-        return whole
+        strips = self.relaxation * self.evaluate(y, asked=MATERIAL).matrices
+        return self.reduced_matrix(np.concatenate([strips, link_matrices(self.links[3])]))
 
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
@@ -304,56 +315,37 @@ def structure_of(model: Model) -> Structure:
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Elements:
-    """Reference geometry and rigidities of the E elements, arrays over the elements.
+    """Reference geometry and rigidities of the E elements of a model, strip by strip.
 
     Attributes:
-        chord: reference chord x2 - x1, (2, E) [m].
-        length: reference length (E,) [m].
+        chord: reference chord x2 - x1, (2, E) [m]. length: reference length (E,) [m].
         axial_rigidity, flexural_rigidity, shear_rigidity: EA [N], EI [N m^2], kGA [N], (E,). Of tapered
-        strips their compliances are the means over the element: end force and end moment lengthen and turn
-        it exactly; all else errs by the second order of its length.
+            strips their compliances are the means over the element: end force and end moment lengthen and
+            turn it exactly; all else errs by the second order of its length.
         linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,), means over the element.
-        natural: strain [1] and curvature [1/m], (2, E).
         plate (E, 2 + 2 TERMS): nu^2 of sections that do not curl freely, else 0; the reach [m] of anticlastic
-        bending; the coefficients of what clamps leave of the curl at two points, as in `law`.
+            bending; the coefficients of what clamps leave of the curl at two points, as in `law`.
+        table (E, 10 + 2 TERMS): rows of `law`, in SI units.
     """
 
-    chord: Array
-    length: Array
-    axial_rigidity: Array
-    flexural_rigidity: Array
-    shear_rigidity: Array
-    linear_density: Array
-    rotary_density: Array
-    natural: Array
-    plate: Array
-
-    @classmethod
-    def of(cls, model: Model) -> "Elements":
-        """Return those of all elements of a model, strip by strip."""
-        chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
+    def __init__(self, model: Model) -> None:
+        self.chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
+        self.length = np.hypot(*self.chord)
         rigid = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
-        own = {name: np.repeat([getattr(s, name) for s in model.strips], model.elements) for name in rigid}
-        if any(strip.tapered for strip in model.strips):
-            for name, growth in zip(rigid, _tapers(model), strict=True):
-                own[name] = own[name] * growth
-        natural = model.effects.find(PreStrain) or PreStrain()
-        return cls(
-            chord=chord,
-            length=np.hypot(*chord),
-            natural=np.tile([[natural.strain], [natural.curvature]], chord.shape[1]),
-            plate=np.vstack([_plate(model, k) for k in range(len(model.strips))]),
-            **own,
+        own = np.repeat(
+            [[getattr(strip, name) for strip in model.strips] for name in rigid], model.elements, axis=1
         )
-
-    def table(self) -> Array:
-        """Return the rows of `law` (E, 10 + 2 TERMS), in SI units."""
-        rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
-        known = np.transpose([*self.chord, self.length, *rigidities, *self.natural])
+        if any(strip.tapered for strip in model.strips):
+            own = own * _tapers(model)
+        self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity = own[:3]
+        self.linear_density: Array = own[3]
+        self.rotary_density: Array = own[4]
+        self.plate = np.vstack([_plate(model, k) for k in range(len(model.strips))])
+        natural = model.find(PreStrain) or PreStrain()
+        known = np.broadcast_arrays(*self.chord, self.length, *own[:3], natural.strain, natural.curvature)
         flat = self.flexural_rigidity[:, None] / (1.0 - self.plate[:, :1])
-        return np.hstack([known, flat, self.plate[:, 1:]])
+        self.table = np.hstack([np.transpose(known), flat, self.plate[:, 1:]])
 
 
 def _tapers(model: Model) -> tuple[Array, ...]:
@@ -375,7 +367,7 @@ def _strip_basis(model: Model) -> Basis:
 def _plate(model: Model, k: int) -> Array:
     """Return what the sections of a strip curl in its elements (E, 2 + 2 TERMS)."""
     strip, rows = model.strips[k], np.zeros((model.elements, 2 + 2 * TERMS))
-    if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects.names):
+    if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects):
         return rows
     nu = strip.poisson_ratio
     rows[:, [0, 2, 2 + TERMS]] = nu**2
@@ -391,7 +383,7 @@ def _plate(model: Model, k: int) -> Array:
 
 def _root_stiffness(model: Model) -> Array:
     """Return the stiffness of the roots of the strips (G, 2) [N m]: of hinges 0, inf where none gives way."""
-    rows, effect = np.full((len(model.strips), 2), np.inf), model.effects.find(RootCompliance)
+    rows, effect = np.full((len(model.strips), 2), np.inf), model.find(RootCompliance)
     for strip, ends, row in zip(model.strips, model.ends, rows, strict=True):
         if effect is not None and effect.root and strip.thickness is not None:
             row[ends != FREE] = strip.flexural_rigidity / (effect.root * strip.thickness)

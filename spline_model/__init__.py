@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from spline_model.design import StripDesign as StripDesign
     from spline_model.discretisation import motion_penalty_stiffness as motion_penalty_stiffness
     from spline_model.dynamics import solve_motion as solve_motion
-    from spline_model.dynamics import solve_release as solve_release
     from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
     from spline_model.effects.boundary import DrivenRotation as DrivenRotation
     from spline_model.effects.plate import plate_factors as plate_factors
@@ -36,14 +35,13 @@ if TYPE_CHECKING:
     from spline_model.sensitivity import sensitivities as sensitivities
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
     from spline_model.solution import Status as Status
-    from spline_model.statics import solve_mechanism as solve_mechanism
     from spline_model.statics import solve_statics as solve_statics
 
 _NAMES = {
     "batch": ("solve_many",),
     "design": ("BodyDesign", "StripDesign"),
     "discretisation": ("motion_penalty_stiffness",),
-    "dynamics": ("solve_motion", "solve_release"),
+    "dynamics": ("solve_motion",),
     "effects.boundary": ("DrivenDisplacement", "DrivenRotation"),
     "effects.plate": ("plate_factors",),
     "effects.registry": ("DEFAULT_EFFECTS", "REGISTRY"),
@@ -56,7 +54,7 @@ _NAMES = {
     "sensitivity": ("sensitivities",),
     "sequential_impulse": ("solve_impulses",),
     "solution": ("Status",),
-    "statics": ("solve_mechanism", "solve_statics"),
+    "statics": ("solve_statics",),
 }
 _HOMES = {name: home for home, names in _NAMES.items() for name in names}
 __all__ = list(_HOMES)

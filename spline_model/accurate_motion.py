@@ -29,20 +29,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import SlideModes
-from spline_model.compile import System, compile_scene
+from spline_model.compile import compile_scene
 from spline_model.design import Design
 from spline_model.discretisation import motion_penalty_stiffness
-from spline_model.effects import DrivenRotation, MixedStretching
+from spline_model.effects import DrivenRotation
 from spline_model.effects.boundary import Driven
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.mechanism import Mechanism
-from spline_model.modes import SLIDE_SHARE, linear_modes
+from spline_model.modes import SLIDE_SHARE, linear_modes, stretching_share
 from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Start, set_in_motion
 from spline_model.newton import Laps
-from spline_model.paper import RIGIDITY, assemble, clamps_of, room, strips_of
 from spline_model.scene import Scene
 from spline_model.solution import MotionEstimate, Status
 from spline_model.statics import static_state
@@ -84,10 +82,12 @@ FINE = 4
 """Records of the finest run between two such instants."""
 SHARE = 2.0 / 3.0
 """The part of the accuracy that the steps may use; the rest is for the control points."""
-LARGEST_PART, SMALLEST_PART = 0.7, 0.1
-"""First and least explicit step over the critical one."""
-EXPLICIT_RATIO = 4.0 / 3.0
-"""Coarse explicit step over the fine one."""
+COARSEST, FINEST = 1.0 / 0.7, 10.0
+"""Explicit steps of first and of most fineness, critical ones over them."""
+EXPLICIT_RATIO, RATIO = 4.0 / 3.0, 2.0
+"""Coarse step over the fine one, of explicit runs and of others."""
+SHORTER, MOST_AT_ONCE = 1.2, 8.0
+"""Fineness that follows, over what the order of the scheme asks for, and over the one before at most."""
 DOUBT = 0.25
 """The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
@@ -121,7 +121,7 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
     swings, highest = 0 in missed, int(missed[np.argmax(frequency[missed])])
     name, also = "the swing", ""
     if highest > 0:
-        stretches = _stretching_share(system, start.z, shapes[:, highest], squares[highest]) > 0.5
+        stretches = stretching_share(system, start.z, shapes[:, highest], squares[highest]) > 0.5
         kind = "sliding" if slide[highest] > SLIDE_SHARE else "stretching" if stretches else "bending"
         name = f"mode {highest + 1} ({kind}, {frequency[highest]:.3g} Hz, {share[highest]:.1g} of the energy)"
     if swings and len(missed) > 1:
@@ -143,24 +143,6 @@ def starts_still(start: Start, design: Design) -> bool:
     stiffest = max(strip.axial_rigidity for strip in design.strips) * scales.length / scales.energy
     least = max(STILL_FORCE, ROUND_OFF * np.finfo(float).eps * stiffest)
     return not start.v.any() and float(np.abs(force).max(initial=0.0)) <= least
-
-
-def _stretching_share(system: System, z: Array, shape: Array, square: float) -> float:
-    """Share of the strain energy of a mode, of shape (Q,), that is in stretching."""
-    layout = system.layout
-    count, size = layout.coordinate_count, layout.size
-    gradient, hessian, free, strips = np.zeros(size), np.zeros((size, size)), z.copy(), strips_of(system)
-    free[count:] = 0.0  # the stiffness of stretching alone, no force's
-    limp = strips._replace(along=strips.along.copy())
-    limp.along[..., RIGIDITY] = 0.0
-    assemble(free, limp, clamps_of(system), gradient, hessian, room(strips))
-    strain = shape @ hessian[:count, :count] @ shape
-    for i, effect in enumerate(system.scene.of(MixedStretching)):
-        if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):
-            at = layout.axial_modes(i)
-            pull = hessian[at, :count] @ shape
-            strain += pull @ np.linalg.solve(-hessian[at, at], pull)
-    return float(strain / abs(square)) if square else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -324,8 +306,7 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
     runs = _Runs(task, instants, explicit=task.critical(n) > 0.0)
     most, part = (MOST_DRIVEN, JUMP) if task.jumps else (MOST, 1.0)
     while True:
-        fineness = runs.resolve(n, accuracy)
-        fine, correction, doubt = runs.solved(n, fineness)
+        fineness, fine, correction, doubt = runs.resolved(n, accuracy)
         by_points = part * (runs.coarser(task.finer(n), fineness) - runs.coarser(n, fineness))
         estimate = MotionEstimate(
             accuracy=accuracy,
@@ -345,12 +326,12 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
 def _comparison(task: Task, records: int | None) -> tuple[int, int]:
     """Spacings of the instants at which runs are compared, and every which fine record is kept."""
     least = max(math.ceil(INSTANTS * task.duration * task.frequency / (2 * math.pi)), INSTANTS)
-    if records is not None and records < least:
+    if records is None:
+        return least, 1
+    if records < least:
         each = math.ceil(least / records)
         return each * records, each * FINE
-    if records is None or records >= FINE * least:
-        return least, 1
-    return least, FINE if records < FINE // 2 * least else FINE // 2
+    return least, next(each for each in (1, FINE // 2, FINE) if each * records >= FINE * least)
 
 
 def _largest(difference: Array) -> float:
@@ -381,46 +362,41 @@ def _answer(fine: Trajectory, estimate: MotionEstimate, every: int) -> Trajector
 class _Runs:
     """Runs of one task, each solved once; compared at ``instants`` + 1 instants.
 
-    How fine one is, is a number: of an ``explicit`` one, its step over the critical one; else its steps
-    between two instants.
+    How fine one is, is the number of its steps between two instants, of an ``explicit`` one over that of
+    critical steps.
     """
 
     def __init__(self, task: Task, instants: int, *, explicit: bool) -> None:
         self.task, self.instants, self.explicit = task, instants, explicit
+        self.ratio = EXPLICIT_RATIO if explicit else RATIO
         self.spacing, self.count = task.duration / instants, 0
         self.critical, self.run = cache(task.critical), cache(self._run)
 
-    def resolve(self, n: int, accuracy: float) -> float:
-        """How fine the first runs are whose error leaves enough of the accuracy, or else the best.
+    def resolved(self, n: int, accuracy: float) -> tuple[float, Trajectory, Array, float]:
+        """Fineness of the first run whose error leaves enough of the accuracy, or else of the best, and what
+        was ``solved`` so."""
+        fineness, most = self._first(accuracy), FINEST if self.explicit else MOST_STEPS / self.instants
+        best, least, excess = None, math.inf, math.inf
+        while excess > 1.0 and (best is None or fineness <= most):
+            solved = self.solved(n, fineness)
+            excess = (_largest(solved[1]) + solved[2]) / (SHARE * accuracy)
+            if best is None or excess < least:
+                best, least = (fineness, *solved), excess
+            fineness *= min(max(SHORTER * excess ** (1.0 / ORDER), self.ratio), MOST_AT_ONCE)
+        assert best is not None, "one was solved"
+        return best
 
-        The first energy-consistent steps have a small enough phase error, amplitude omega t (omega h)^2 / 12.
-        The leapfrog's steps are a hundred times cheaper and resolve all from the start.
+    def _first(self, accuracy: float) -> float:
+        """How fine the first runs are.
+
+        Energy-consistent steps have a small enough phase error, amplitude omega t (omega h)^2 / 12. The
+        leapfrog's steps are a hundred times cheaper and resolve all from the start.
         """
-        following: float | None = LARGEST_PART
-        if not self.explicit:
-            task, step = self.task, math.inf
-            angle = abs(task.start or 0.0) * task.frequency * task.duration  # the phase error is a part of it
-            if angle > 0:
-                step = math.sqrt(6 * SHARE * accuracy / angle) / task.frequency
-            following = FINE * max(1, math.ceil(self.spacing / (FINE * step)))
-        errors: dict[float, float] = {}
-        while following is not None:
-            fineness = following
-            _, correction, doubt = self.solved(n, fineness)
-            errors[fineness] = error = _largest(correction) + doubt
-            if error <= SHARE * accuracy:
-                break
-            following = self.finer(fineness, error / (SHARE * accuracy))
-        return min(errors, key=lambda each: errors[each])
-
-    def finer(self, fineness: float, excess: float) -> float | None:
-        """What follows on runs whose error is ``excess`` times too large; None if nothing does."""
         if self.explicit:
-            part = fineness * min(max(0.9 * excess ** (-1.0 / ORDER), 0.3), 0.8)
-            return part if part >= SMALLEST_PART else None
-        factor = min(max(1.2 * math.sqrt(min(excess, 1e6)), 2.0), 8.0)
-        fine = FINE * math.ceil(fineness * factor / FINE)
-        return fine if fine * self.instants <= MOST_STEPS else None
+            return COARSEST
+        task = self.task
+        angle = abs(task.start or 0.0) * task.frequency * task.duration  # the phase error is a part of it
+        return self.spacing * task.frequency * math.sqrt(angle / (6 * SHARE * accuracy))
 
     def solved(self, n: int, fineness: float) -> tuple[Trajectory, Array, float]:
         """The fine run, and what coarser ones say that it lacks.
@@ -431,21 +407,20 @@ class _Runs:
         steps = self.steps(n, fineness)
         fine, coarser = self.run(n, steps), self.coarser(n, fineness)
         change = self.moves(fine) - coarser
+        correction = change / (self.ratio**ORDER - 1.0)
         if self.explicit:
-            return fine, change / (EXPLICIT_RATIO**ORDER - 1.0), DOUBT * _largest(change)
-        before = coarser - self.moves(self.run(n, steps // 4))
-        return fine, change / 3.0, _largest(before - 4.0 * change) / 4.0
+            return fine, correction, DOUBT * _largest(change)
+        before = coarser - self.moves(self.run(n, steps // FINE))
+        return fine, correction, _largest(before / self.ratio**ORDER - change)
 
     def coarser(self, n: int, fineness: float) -> Array:
         """Coordinates (S, K) of the second finest run."""
-        steps = self.steps(n, fineness)
-        return self.moves(self.run(n, 3 * steps // 4 if self.explicit else steps // 2))
+        return self.moves(self.run(n, round(self.steps(n, fineness) / self.ratio)))
 
     def steps(self, n: int, fineness: float) -> int:
         """Steps of the finest run between two instants."""
-        if self.explicit:
-            return FINE * math.ceil(self.spacing / (FINE * fineness * self.critical(n)))
-        return int(fineness)
+        whole = fineness * self.spacing / self.critical(n) if self.explicit else fineness
+        return FINE * max(1, math.ceil(whole / FINE))
 
     def moves(self, run: Trajectory) -> Array:
         """Rotations of all bodies [rad], places of bodies and free ends over a strip [1], at the instants.

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
-from typing import Any, Unpack
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,18 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 from spline_model.accuracy import Search, wanted
 from spline_model.batch_paths import Batch, Many
 from spline_model.confirmed import finer, relative
-from spline_model.discretisation import Described, Discretisation
-from spline_model.errors import InvalidParameter, require_choice, require_count
-from spline_model.mechanism import Mechanism
-from spline_model.parameters import Given, one_each, pivots, varied
+from spline_model.errors import require_choice, require_count
+from spline_model.mechanism import Mechanism, require_mechanism
+from spline_model.parameters import Given, one_each, varied
 from spline_model.statics import LOADS_FIRST, ORDERS
 
 Array = NDArray[np.float64]
 
 
 def solve_many(
-    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]] | Mechanism,
-    values: Mapping[str, ArrayLike] | None = None,
+    mechanism: Mechanism,
+    values: Mapping[str, ArrayLike],
     *,
     rotation: ArrayLike,
     body: str | None = None,
@@ -33,36 +30,32 @@ def solve_many(
     accuracy: float | None = None,
     threads: int | None = None,
     section_depth: ArrayLike | None = None,
-    **described: Unpack[Described],
 ) -> Batch:
-    """Return the static paths of many designs.
+    """Return the static paths of many designs that differ from a mechanism in some numbers.
 
     Parameters
     ----------
-    designs : mapping, sequence of mappings, or Mechanism
-        Keywords of ``spline_model.pivot.cross_axis_pivot`` in SI units as columns, each a number or an array
-        (D,), or one mapping per design. Or a mechanism, with `values`.
-    values : mapping of arrays (D,), SI units, default None
+    mechanism : Mechanism
+        With the discretisation of all designs.
+    values : mapping of arrays (D,), SI units
         Numbers of the mechanism that vary, by the names of ``spline_model.parameters``: "thickness" of all
-        strips, "crank.centre_x" of a body, "ground_crank.end_y" of a strip. The end of a strip does not
-        move with its body.
+        strips, "crossing_ratio" of a pivot, "crank.centre_x" of a body, "ground_crank.end_y" of a strip. The
+        end of a strip does not move with its body. An array of one number is for all designs.
     rotation : float or (D,), rad
         End of all paths, or of each path.
     body : str, default None
         Rotated and reported body; None is the only one.
     increments : int, default 20
     order : str
-        "loads first" (default) or "together", as in ``spline_model.statics.solve_mechanism``. Weight and
+        "loads first" (default) or "together", as in ``spline_model.statics.solve_statics``. Weight and
         pre-strain act first.
     accuracy : float, 1, default None
-        As in ``spline_model.statics.solve_mechanism``, for each design: each gets its own number of control
+        As in ``spline_model.statics.solve_statics``, for each design: each gets its own number of control
         points, and its estimated `errors`.
     threads : int, default None
         Number of threads; None is one per core. Results do not depend on it.
     section_depth : float or (D,), m, default None
         Depth of the sections in the plane of bending, for strains.
-    described
-        Discretisation of all designs, as in ``spline_model.pivot.cross_axis_pivot``.
 
     Returns
     -------
@@ -93,24 +86,25 @@ def solve_many(
     """
     require_count("increments", increments, 1)
     require_choice("order", order, ORDERS)
-    base, given = _given(designs, values, Discretisation(**described), np.size(rotation))
-    base.design.require_uncut("batches")
+    require_mechanism(mechanism)
+    mechanism.design.require_uncut("batches")
+    given = varied(mechanism, values, np.size(rotation))
     count = len(given.ends)
     turned = np.broadcast_to(one_each("rotation", rotation, count), (count,))
     many = Many(
-        base=base,
+        base=mechanism,
         given=given,
         turned=turned,
         shared=np.ndim(rotation) == 0,
         depth=_depth(given, section_depth),
-        body=base.design.body_named(body),
+        body=mechanism.design.body_named(body),
         increments=increments,
         first=order == LOADS_FIRST,
         workers=threads or os.cpu_count() or 1,
     )
-    chosen = wanted(accuracy, base.design)
+    chosen = wanted(accuracy, mechanism.design)
     if chosen is None:
-        batch = many.empty(base.design.discretisation.points, None)
+        batch = many.empty(mechanism.design.discretisation.points, None)
         many.solve(batch, np.arange(count))
         return batch
     return _chosen(many, chosen)
@@ -159,22 +153,6 @@ def _distances(many: Many, coarse: Batch, fine: Batch, rows: NDArray[np.int64]) 
         name: relative(getattr(coarse, name)[rows], getattr(fine, name)[rows], unit)
         for name, unit in units.items()
     }
-
-
-def _given(
-    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]] | Mechanism,
-    values: Mapping[str, ArrayLike] | None,
-    grid: Discretisation,
-    count: int,
-) -> tuple[Mechanism, Given]:
-    """A mechanism, and the numbers of the designs that are like it; at least ``count`` of them."""
-    if isinstance(designs, Mechanism):
-        if grid != Discretisation():
-            raise InvalidParameter("discretisation", grid, "none beside a mechanism, which has its own")
-        return designs, varied(designs, values or {}, count)
-    if values is not None:
-        raise InvalidParameter("values", list(values), "none beside columns of pivots, which hold them")
-    return pivots(designs, asdict(grid))
 
 
 def _depth(given: Given, section_depth: ArrayLike | None) -> Array:

@@ -28,11 +28,17 @@ from spline_model.effects import (
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import FOLLOWER
 from spline_model.errors import InvalidParameter
-from spline_model.followers import NO_FOLLOWERS, Followers
 from spline_model.frames import Frames
-from spline_model.layout import Layout
-from spline_model.scene import Scene, Strip
-from spline_model.tables import DriveTable, LoadTable, between_bodies, frames_of, weight
+from spline_model.scene import Layout, Scene, Strip
+from spline_model.tables import (
+    NO_FOLLOWERS,
+    DriveTable,
+    Followers,
+    LoadTable,
+    between_bodies,
+    frames_of,
+    weight,
+)
 
 Array = NDArray[np.float64]
 
@@ -183,7 +189,7 @@ class System:
     @property
     def relaxation_time(self) -> float:
         """Of all strips [s]."""
-        return sum(damping.relaxation_time for damping in self.scene.of(StripDamping))
+        return sum((damping.relaxation_time for damping in self.scene.of(StripDamping)), 0.0)
 
     def _add(self, matrix: Array, strip: Strip, block: Array) -> None:
         """Add a matrix of a strip's control points (n, n), the same for x and y."""

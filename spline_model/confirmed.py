@@ -245,7 +245,7 @@ def relative(mine: Array, right: Array, unit: Array) -> Array:
     if right.size == 0:
         return np.full(len(right), np.nan)
     found = np.empty((2, len(right)))
-    _largest(mine.reshape(len(mine), -1), right.reshape(len(right), -1), found)
+    _largest(mine.reshape(len(mine), -1).copy(), right.reshape(len(right), -1).copy(), found)
     return np.asarray(found[0] / np.where(found[1] > NOTHING * unit, found[1], unit))
 
 

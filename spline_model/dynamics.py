@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,42 +40,6 @@ Scheme = Callable[[Start], Moves]
 """What makes of a start what advances it."""
 MOST_IN_MOTION = 14
 """Control points at which a motion that stops is given up, where their number is left open."""
-
-
-def solve_release(pivot: Mechanism, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
-    """Release a pivot at rest from the static state at a rotation.
-
-    Parameters
-    ----------
-    pivot : Mechanism
-    start : float, rad, default pi/2
-        Rotation at the release.
-    options
-        Keywords of `solve_motion`: `duration` and `step` in s, and more.
-
-    Returns
-    -------
-    Trajectory
-        T records, the start first: time (T,), rotation (T,), centre (T, 2), energies (T,) and more.
-
-    Raises
-    ------
-    InvalidParameter, ConvergenceError
-        As in `solve_motion`.
-
-    References
-    ----------
-    Valentini and Pezzuti (2013), Fig 6.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
-
-    >>> motion = solve_release(pivot, start=0.1, duration=1e-3, step=1e-4, check=False)
-    >>> bool(motion.rotation[-1] < 0.1)
-    True
-    """
-    return solve_motion(pivot, start=start, **options)
 
 
 def solve_motion(

@@ -80,7 +80,7 @@ class ConvergenceError(RuntimeError):
     ...     parameters={"applied_force": {"force": (-1.0, 0.01)}},
     ... )
     >>> try:
-    ...     solve_mechanism(far, increments=3)
+    ...     solve_statics(far, increments=3)
     ... except ConvergenceError as stopped:
     ...     print(0.0 <= stopped.load_factor < 1.0, len(stopped.solution.load_factor) >= 1)
     True True

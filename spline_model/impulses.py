@@ -27,11 +27,11 @@ from typing import Annotated, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import Clamp, Driven, MixedStretching
-from spline_model.effects.base import Constraint
+from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter
 from spline_model.motion.start import Motion
+from spline_model.motion.step import HALVED, STEPS
 from spline_model.paper import (
     CURL,
     RELAXATION,
@@ -53,9 +53,9 @@ from spline_model.strip.laws import SPATIAL
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-STEPS, SOLVES, SWEEPS, HALVED, LIMITED = range(5)
-"""Places of the counters: steps, linear systems, sweeps over the constraints, steps that were halved, and
-steps whose velocity was reduced so that no energy is gained."""
+SOLVES, SWEEPS, LIMITED = range(HALVED + 1, HALVED + 4)
+"""Places of the counters behind those of steps and of halved ones: linear systems, sweeps over the
+constraints, and steps whose velocity was reduced so that no energy is gained."""
 COUNTS, ENERGY, LOST = range(3)
 """Places of ``Moving.status``."""
 MOST_ENERGY = 100.0
@@ -76,8 +76,6 @@ SLACK = 1e-14
 """Gain of energy in EI/L that is round-off."""
 SLOWEST = 0.1
 """Least |C'| over its value at rest: with less the curve is folded."""
-LEAST_PART = 2.0**-6
-"""Least part of a step before it is refused: bounds the time that a step may take."""
 TINY = 1e-300
 """In place of a pivot of zero: what follows is not finite, and the step is refused."""
 
@@ -87,7 +85,7 @@ class Problem(NamedTuple):
 
     strips, clamps: of the scene. held_at, held_row (D,): place of each coordinate that a support holds and of
     its multiplier, held_to (D,) where. mass, inverse, drag (Q, Q); force (Q,): weight and loads; rigidity (M,
-    M) inverse compliance and relaxation (M,) [s] of the axial forces; unit (N,) makes residuals
+    M) inverse compliance and relaxation [s] of the axial forces; unit (N,) makes residuals
     dimensionless, energy is EI/L [J]; turns: the rotations' places. rows (R,): places in z of the multipliers
     of the constraints, in the order of a sweep; first (B + 1,): where each begins in them, one of all where
     there are no sweeps. grounded: 1 if the ground holds anything. sweeps: of a linear system, at most;
@@ -104,7 +102,7 @@ class Problem(NamedTuple):
     drag: Array
     force: Array
     rigidity: Array
-    relaxation: Array
+    relaxation: float
     unit: Array
     energy: float
     turns: Indices
@@ -133,10 +131,10 @@ class Problem(NamedTuple):
             drag=system.drag if system.drag.size else np.zeros_like(system.mass),
             force=loads_of(motion) + (system.weight if system.weight.size else 0.0),
             rigidity=motion.rigidity,
-            relaxation=motion.relaxation,
+            relaxation=system.relaxation_time,
             unit=system.scales.unit / system.scales.energy,
             energy=system.scales.energy,
-            turns=motion.turns,
+            turns=np.array([start + 2 for start in system.layout.bodies.values()], dtype=np.int64),
             rows=rows,
             first=np.array([0, *ends], dtype=np.int64),
             grounded=int(clamps.grounded or drives.row.size > 0),
@@ -182,7 +180,7 @@ class Moving(NamedTuple):
 
     z (N,) unknowns, v (Q,) velocities; earlier (2, Q) coordinates and velocities of the step before; begun
     (Q,) coordinates at the start; status (3,): 1 if ``earlier`` counts, the energy with the potential of
-    weight and loads since the start [J], and the energy dissipated [J]; counters (5,).
+    weight and loads since the start [J], and the energy dissipated [J]; counters (6,).
     """
 
     z: Array
@@ -222,22 +220,12 @@ def _require_known(motion: Motion) -> None:
             raise InvalidParameter("effects", f"no inertia of {name}", "inertia of every strip and body")
 
 
-def _constraints(motion: Motion) -> list[list[int]]:
-    """Rows of each constraint of the printed form, first of each strip that cannot stretch, then clamp by
-    clamp, and last of each body that supports hold."""
-    layout, scene = motion.system.layout, motion.system.scene
-    found: dict[tuple[str, str], list[int]] = {}
-    for (at, count), effect in zip(layout.modes, scene.of(MixedStretching), strict=True):
-        if effect.axial_compliance == 0:
-            found.setdefault((effect.strip, "axial"), []).extend(range(at, at + count))
-    for (at, count), constraint in zip(layout.multipliers, scene.of(Constraint), strict=True):
-        if isinstance(constraint, Clamp):
-            key: tuple[str, str] = (constraint.strip, constraint.end)
-        else:
-            assert isinstance(constraint, Driven), "there are no others"
-            key = (constraint.body, "support")
-        found.setdefault(key, []).extend(range(at, at + count))
-    return list(found.values())
+def _constraints(motion: Motion) -> list[range]:
+    """Rows of each constraint: of strips that cannot stretch, then of clamps and supports."""
+    layout, stretching = motion.system.layout, motion.system.scene.of(MixedStretching)
+    axial = zip(layout.modes, stretching, strict=True)
+    places = [place for place, effect in axial if effect.axial_compliance == 0]
+    return [range(at, at + count) for at, count in (*places, *layout.multipliers)]
 
 
 @called()
@@ -337,11 +325,8 @@ def _fill_drag(z, problem, space):
 def _damped(v, h, problem, space):
     """Return the energy [J] that damping takes in a step of length h with the velocity v, by ``space.drag``
     and the rates (M,) of the axial forces' strains."""
-    rates, relaxation, lost = space.rates, problem.relaxation, _product(space.drag, v, v)
-    for k in range(rates.size):
-        for j in range(rates.size):
-            lost += relaxation[k] * rates[k] * problem.rigidity[k, j] * rates[j]
-    return h * lost
+    lost = problem.relaxation * _product(problem.rigidity, space.rates, space.rates)
+    return h * (_product(space.drag, v, v) + lost)
 
 
 @called()
@@ -369,51 +354,38 @@ def _solve(a, x, count):
 
 
 @once()
-def _printed_advance(moving, h, problem, space):
-    """Advance by one step; False, with the state as it was, if it is unstable.
+def _printed_step(moving, h, problem, space):
+    """Take one step; False, with the state as it was, if it is unstable.
 
     ``moving.z`` is left with the axial forces of q0 and the constraint forces P / h.
     """
-    z, v, status, x, count = moving.z, moving.v, moving.status, space.v, moving.v.size
-    gradient, matrix = space.gradient, space.matrix
-    most = status[ENERGY] + abs(_fallen(z, moving.begun, problem)) + FROM_REST * problem.energy
-    copy(v, moving.earlier[1])
-    copy(z[:count], moving.earlier[0])
+    z, v, ahead, force, count = moving.z, moving.v, space.v, space.z, moving.v.size
+    gradient, matrix, axial = space.gradient, space.matrix, space.rates.size
+    most = moving.status[ENERGY] + abs(_fallen(z, moving.begun, problem)) + FROM_REST * problem.energy
     strain_energy(z, problem, space)
     _fill_drag(z, problem, space)
-    for k in range(space.rates.size):
+    for k in range(axial):
         space.rates[k] = _row_times(matrix, count + k, v)
-    for i in range(count, z.size):
-        z[i] = 0.0
-    for k in range(space.rates.size):  # a = C^-1 (eps + beta d(eps)/dt)
-        strain = space.strains[k] + problem.relaxation[k] * space.rates[k]
-        for j in range(space.rates.size):
-            z[count + j] += problem.rigidity[j, k] * strain
+    for k in range(axial):  # a = C^-1 (eps + beta d(eps)/dt)
+        for j in range(axial):
+            strain = space.strains[j] + problem.relaxation * space.rates[j]
+            force[count + k] += problem.rigidity[k, j] * strain
     for i in range(count):
-        push = gradient[i]
-        for k in range(count, count + space.rates.size):
-            push += matrix[k, i] * z[k]
-        for j in range(count):
-            push += space.drag[i, j] * v[j]
-        gradient[i] = push
+        for k in range(count, count + axial):
+            gradient[i] += matrix[k, i] * force[k]
+        gradient[i] += _row_times(space.drag, i, v)
     for i in range(count):
-        x[i] = v[i]
-        for j in range(count):
-            x[i] -= h * problem.inverse[i, j] * gradient[j]  # Eq 21
-    moving.counters[SWEEPS] += _apply_impulses(x, problem.tolerance / h, problem, space)
-    status[LOST] += _damped(v, h, problem, space)
-    for i in range(count):
-        v[i] = x[i]
-        z[i] += h * v[i]  # Eq 23
+        ahead[i] = v[i] - h * _row_times(problem.inverse, i, gradient[:count])  # Eq 21
+    moving.counters[SWEEPS] += _apply_impulses(ahead, problem.tolerance / h, problem, space)
+    if not 0.5 * _product(problem.mass, ahead, ahead) <= MOST_ENERGY * most:
+        return False
+    moving.status[LOST] += _damped(v, h, problem, space)
+    copy(ahead, v)
+    for i in range(z.size):
+        z[i] = z[i] + h * v[i] if i < count else force[i]  # Eq 23
     for r in range(space.mu.size):
         z[problem.rows[r]] = space.mu[r] / h
-    moving.counters[STEPS] += 1
     moving.counters[SOLVES] += 1
-    if not 0.5 * _product(problem.mass, v, v) <= MOST_ENERGY * most:
-        for i in range(z.size):
-            z[i] = moving.earlier[0, i] if i < count else 0.0
-        copy(moving.earlier[1], v)
-        return False
     return True
 
 
@@ -457,29 +429,7 @@ def _apply_impulses(v, tolerance, problem, space):
 
 
 @once()
-def _stable_advance(moving, duration, problem, space):
-    """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
-    status, done, step = moving.status, 0.0, duration
-    while duration - done > 1e-9 * duration:
-        step = min(step, duration - done)
-        rule = EULER
-        if step == duration:
-            rule = BACKWARD if status[COUNTS] == 1.0 else START
-        if _try_step(moving, step, rule, problem, space):
-            done += step
-            step *= 2.0
-            continue
-        moving.counters[HALVED] += 1
-        status[COUNTS] = 0.0
-        step *= 0.5
-        if step < LEAST_PART * duration:
-            return False
-    status[COUNTS] = 1.0 if step == 2.0 * duration else 0.0
-    return True
-
-
-@once()
-def _try_step(moving, h, rule, problem, space):
+def _stable_step(moving, h, rule, problem, space):
     """Take one step by a rule; False, with the state as it was, if it is not solved or gains energy."""
     z, v, status = moving.z, moving.v, moving.status
     span, lag = _predict(moving, h, rule, problem.turns, space)
@@ -507,33 +457,22 @@ def _try_step(moving, h, rule, problem, space):
     copy(v, moving.earlier[1])
     copy(space.v, v)
     copy(space.z, z)
-    status[COUNTS] = 1.0
-    moving.counters[STEPS] += 1
     return True
 
 
 @once()
 def _predict(moving, h, rule, turns, space):
     """Fill the rule's start values and the first guess in ``space``; returns the spans s and r [s]."""
-    z, v, count = moving.z, moving.v, moving.v.size
-    span = lag = h
-    for i in range(count):
-        space.base[i], space.drift[i] = z[i], v[i]
-        if rule == START:
-            space.base[i] += 0.5 * h * v[i]
-        elif rule == BACKWARD:
-            space.base[i] = (4.0 * z[i] - moving.earlier[0, i]) / 3.0
-            space.drift[i] = (4.0 * v[i] - moving.earlier[1, i]) / 3.0
-    if rule == START:
-        span = 0.5 * h
-    elif rule == BACKWARD:
-        span = lag = 2.0 * h / 3.0
-    reach = h
+    z, v, reach = moving.z, moving.v, h
+    back, half = (1.0 / 3.0 if rule == BACKWARD else 0.0), (0.5 * h if rule == START else 0.0)
+    lag = (1.0 - back) * h
+    span = lag - half
     for k in range(turns.size):
-        if abs(v[turns[k]]) * reach > MOST_REACH:
-            reach = MOST_REACH / abs(v[turns[k]])
+        reach = min(reach, MOST_REACH / max(abs(v[turns[k]]), TINY))
     copy(z, space.z)
-    for i in range(count):
+    for i in range(v.size):
+        space.base[i] = z[i] + back * (z[i] - moving.earlier[0, i]) + half * v[i]
+        space.drift[i] = v[i] + back * (v[i] - moving.earlier[1, i])
         space.v[i] = (z[i] + reach * v[i] - space.base[i]) / span
     return span, lag
 
@@ -557,9 +496,8 @@ def _solve_step(span, lag, problem, space, counters):
         for i in range(gradient.size):
             value = abs(gradient[i]) * problem.unit[i]
             norm = max(norm, value) if value < 1e300 else 1e300
-        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before) or not norm < 1e12:
-            break
-        if iteration == ITERATIONS:
+        near = norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)
+        if near or not norm < 1e12 or iteration == ITERATIONS:
             break
         before = norm
         for i in range(x.size):
@@ -569,8 +507,7 @@ def _solve_step(span, lag, problem, space, counters):
         counters[SWEEPS] += 1
         share = 1.0
         for k in range(turns.size):
-            if abs(x[turns[k]]) * share > MOST_TURN:
-                share = MOST_TURN / abs(x[turns[k]])
+            share = min(share, MOST_TURN / max(abs(x[turns[k]]), TINY))
         for i in range(v.size):
             v[i] += share * x[i] / span
         for i in range(v.size, x.size):
@@ -593,13 +530,11 @@ def _relax(z, v, span, problem, space):
             strains[k] -= matrix[row, count + j] * z[count + j]
         space.energy[0] -= z[row] * (gradient[row] + strains[k]) / 2.0
     space.energy[0] += 0.5 * _product(problem.rigidity, strains, strains)
-    for k in range(strains.size):
-        beta, row = problem.relaxation[k], count + k
-        if beta > 0.0:
-            less = 1.0 / (1.0 + beta / span)
-            gradient[row] = less * (gradient[row] + beta * rates[k])
-            for j in range(strains.size):
-                matrix[row, count + j] *= less
+    less = 1.0 / (1.0 + problem.relaxation / span)
+    for k in range(count, count + strains.size):
+        gradient[k] = less * (gradient[k] + problem.relaxation * rates[k - count])
+        for j in range(count, count + strains.size):
+            matrix[k, j] *= less
 
 
 @once()
@@ -625,19 +560,24 @@ def store(moving, problem, space, record):
 
 
 @kernel()
-def advance(moving, h, begin, end, every, stable, problem, space, records):
-    """Take the steps ``begin`` ... ``end`` - 1 of length h [s].
+def advance(moving, h, begin, end, every, stable, whole, problem, space, records):
+    """Take the steps ``begin`` ... ``end`` - 1 of length h [s], ``whole`` ones or parts.
 
     Returns the number of the first step that was not taken; ``moving`` stands at its begin. records: filled
     at the ends of steps whose number ``every`` divides.
     """
     for k in range(begin, end):
         if stable:
-            done = _stable_advance(moving, h, problem, space)
+            rule = EULER
+            if whole:
+                rule = BACKWARD if moving.status[COUNTS] == 1.0 else START
+            done = _stable_step(moving, h, rule, problem, space)
         else:
-            done = _printed_advance(moving, h, problem, space)
+            done = _printed_step(moving, h, problem, space)
+        moving.status[COUNTS] = 1.0 if done and whole else 0.0
         if not done:
             return k
+        moving.counters[STEPS] += 1
         if (k + 1) % every == 0:
             store(moving, problem, space, records[(k + 1) // every - begin // every - 1])
     return end

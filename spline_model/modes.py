@@ -24,6 +24,7 @@ from spline_model.sections import STATIONS, curves
 from spline_model.solution import ErrorEstimate
 from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle, static_state
+from spline_model.strip.element import RIGIDITY
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ ROUND_OFF = 1e-14
 """Squared frequency of a rigid motion, over the sum of the terms that cancel in its stiffness."""
 
 
-class RoundOff(InvalidParameter):
+class _RoundOff(InvalidParameter):
     """Matrices whose natural frequencies are decided by round-off."""
 
 
@@ -173,7 +174,7 @@ def _accurate_modes(
             if path is not None and (not path.settled or at_limit(path)):
                 raise
             return None
-        except RoundOff:  # fewer control points may have an answer
+        except _RoundOff:  # fewer control points may have an answer
             return None
 
     def attempt(fewer: Grid, more: Grid) -> tuple[float, Modes] | None:
@@ -243,14 +244,14 @@ def _modes(
 
 
 def _require_possible(values: Array, path: StaticSolution) -> None:
-    """Raise RoundOff if more squared frequencies are negative than the inertia of the state permits.
+    """Raise _RoundOff if more squared frequencies are negative than the inertia of the state permits.
 
     Each drive that a motion releases adds at most one (Cauchy's interlacing theorem).
     """
     unstable, most = int(np.sum(values < 0.0)), int(path.inertia[-1]) + path.reactions.shape[1]
     if unstable > most:
         expected = f"{most} at most by the inertia of the state: round-off decides a frequency [1]"
-        raise RoundOff("unstable modes", unstable, expected)
+        raise _RoundOff("unstable modes", unstable, expected)
 
 
 def linear_modes(system: System, z: Array) -> tuple[Array, Array, Array]:
@@ -262,7 +263,7 @@ def linear_modes(system: System, z: Array) -> tuple[Array, Array, Array]:
 
     Raises
     ------
-    RoundOff
+    _RoundOff
         Frequencies that are decided by round-off.
     """
     if not system.mass.any():
@@ -280,7 +281,7 @@ def _linear_modes(system: System, state: bytes) -> tuple[Array, Array, Array]:
         free = _without_massless(free, stiffness, inertia)
         values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
     except LinAlgError:
-        raise RoundOff(
+        raise _RoundOff(
             "coordinates of the strips",
             len(stiffness),
             "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]",
@@ -290,6 +291,20 @@ def _linear_modes(system: System, state: bytes) -> tuple[Array, Array, Array]:
     slid = np.einsum("im,ij,jm->m", shapes, slide, shapes)
     share = np.divide(slid, np.abs(strain), out=np.zeros_like(slid), where=values != 0.0)
     return values, by @ shapes, share
+
+
+def stretching_share(system: System, z: Array, shape: Array, square: float) -> float:
+    """Return the share [1] of the strain energy of a mode that is in stretching.
+
+    z (N,): the state; shape (Q,): of unit modal mass; square: of its circular frequency [1/s^2].
+    """
+    model, unstressed = require_reduced(system), z.copy()
+    unstressed[system.layout.coordinate_count :] = 0.0  # the stiffness of stretching alone, no force's
+    limp = model.strips.along.copy()
+    limp[..., RIGIDITY] = 0.0
+    stiffness, slide, _, by = _linear(replace(model, strips=model.strips._replace(along=limp)), unstressed)
+    moved = np.linalg.lstsq(by, shape, rcond=None)[0]
+    return float(moved @ (stiffness - slide) @ moved / abs(square)) if square else 0.0
 
 
 def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:

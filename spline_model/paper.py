@@ -72,7 +72,7 @@ class Strips(NamedTuple):
         curve = np.stack([basis.evaluate(u, order) for order in (1, 2)], axis=1)
         mixed = [[e for e in scene.of(MixedStretching) if e.strip == bend.strip] for bend in bends]
         values = [e.modes.evaluate(u) for e in mixed[0]]
-        modes = np.concatenate(values or [np.zeros((len(u), 0))], axis=1)
+        modes = np.ascontiguousarray(np.concatenate(values or [np.zeros((len(u), 0))], axis=1))
         along, own = np.zeros((len(bends), len(u), DROP + TERMS)), np.zeros((len(bends), 4))
         compliance = np.zeros((len(bends), modes.shape[1], modes.shape[1]))
         stretched = {e.strip: e for e in scene.of(Stretching)}

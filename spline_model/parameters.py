@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spline_model.compile import compile_scene
 from spline_model.design import Design
 from spline_model.effects import Clamp
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
-from spline_model.pivot import cross_axis_pivot, ends_at_rest, turned
+from spline_model.pivot import ends_at_rest
 from spline_model.reduced.numbers import Numbers
 from spline_model.scene import Scene
 
@@ -193,40 +192,6 @@ def require_names(asked: Mechanism, names: Sequence[str], argument: str) -> None
             raise InvalidParameter(argument, name, f"one of {known}, {one}")
 
 
-def pivots(
-    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]], discretisation: Mapping[str, Any]
-) -> tuple[Mechanism, Given]:
-    """Return a pivot of unit length and rigidity, and the numbers (D,) of many pivots over its units.
-
-    The unit pivot makes the answer of each design independent of the others. designs: keywords of
-    ``cross_axis_pivot`` in SI units.
-
-    Raises
-    ------
-    InvalidParameter
-        Loads, which these units do not scale.
-    """
-    columns = _columns(designs)
-    first: dict[str, Any] = {
-        name: tuple(c[0].tolist()) if c.ndim > 1 else float(c[0]) for name, c in columns.items()
-    }
-    system = compile_scene(cross_axis_pivot(**first, **discretisation).driven(1.0))
-    if system.is_preloaded or system.acting.value.any():
-        expected = "no loads on pivots by their keywords: a mechanism and its values"
-        raise InvalidParameter("discretisation", dict(discretisation), expected)
-    unit: dict[str, Any] = dict.fromkeys(
-        ("length", "second_moment_of_area", "youngs_modulus", "density"), 1.0
-    )
-    unit |= {"area": 1e3, "poisson_ratio": 0.3, "body_mass": 1.0, "body_moment_of_inertia": 1.0}
-    unit |= {"inclination": np.pi / 4, "crossing_ratio": 0.5}
-    pivot = cross_axis_pivot(**unit, **discretisation)
-    taken = {name: columns[name] for name in (*PLACED, *MATERIAL, *SECTION) if name in columns}
-    given, zero = varied(pivot, taken), np.zeros(1)
-    x, y = columns.get("centre_offset", np.zeros((1, 2))).T
-    given.centres[:, 0] += np.stack(turned(x, y, columns.get("orientation", zero)), axis=-1)
-    return pivot, given
-
-
 def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1) -> Given:
     """Return the designs of a mechanism whose numbers are replaced by ``values`` (D,) [SI], by parameter
     name.
@@ -247,17 +212,6 @@ def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1
             _refuse(name, column, (column > 0.0) & (column < below), expected)
     given.put(mechanism, columns)
     return given
-
-
-def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> dict[str, Array]:
-    """Designs as columns of equal length, pairs with a second axis."""
-    if not isinstance(designs, Mapping):
-        designs = {name: np.array([design[name] for design in designs]) for name in designs[0]}
-    pairs = {name: 1 + (name == "centre_offset") for name in designs}
-    values = {name: np.asarray(value, dtype=float) for name, value in designs.items()}
-    count = max((len(v) for name, v in values.items() if v.ndim >= pairs[name]), default=1)
-    shape = {name: (count, 2) if pairs[name] == 2 else (count,) for name in values}
-    return {name: np.broadcast_to(value, shape[name]) for name, value in values.items()}
 
 
 def _ends(**shape: Any) -> Array:

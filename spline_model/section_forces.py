@@ -103,7 +103,7 @@ def strip_fields(mechanism: Mechanism, states: Array, analysis: str = "static") 
     >>> path = solve_statics(pivot, rotation=0.1, increments=1)
     >>> strip_fields(pivot, path.states).bending_moment.shape[:2]
     (2, 2)
-    >>> motion = solve_release(pivot, start=0.1, duration=1e-3, step=1e-4, records=2, check=False)
+    >>> motion = solve_motion(pivot, start=0.1, duration=1e-3, step=1e-4, records=2, check=False)
     >>> strip_fields(pivot, motion.states, "release").shear_force.shape[:2]
     (3, 2)
     """

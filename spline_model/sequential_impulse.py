@@ -50,6 +50,7 @@ from spline_model.impulses import (
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import linear_modes
 from spline_model.motion.arrays import zeros
+from spline_model.motion.leapfrog import highest_frequency
 from spline_model.motion.moves import Moves
 from spline_model.motion.records import (
     DISSIPATED,
@@ -60,10 +61,10 @@ from spline_model.motion.records import (
     WORK,
     Trajectory,
 )
-from spline_model.motion.start import Start
+from spline_model.motion.start import Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.scene import Scene
-from spline_model.statics import settle, static_state
+from spline_model.statics import settle
 
 Array = NDArray[np.float64]
 
@@ -73,7 +74,8 @@ TOLERANCE = 1e-9
 """Residual of a stable step, and gap that sweeps close, in EI/L^2, EI/L, L and rad."""
 STABILITY_LIMIT = 2.0
 """omega h up to which symplectic Euler does not amplify an oscillation."""
-COUNTERS = ("steps", "solves", "sweeps", "halved_steps", "limited_steps")
+SMALLEST_STEP = 2.0**-6
+"""Least part of a stable step before it is refused: bounds the time that a step may take."""
 REASONS = {
     "published": "the step is above the stability limit",
     "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
@@ -89,13 +91,14 @@ class Stepper(Moves):
     """
 
     most_gain = math.inf
-    smallest = 1.0
+    counts = ("steps", "halved_steps", "solves", "sweeps", "limited_steps")
 
     def __init__(
         self, start: Start, *, form: str = "stable", sweeps: int | None = None, tolerance: float = TOLERANCE
     ) -> None:
         self.motion, self._form, motion = start.motion, form, start.motion
         self.name = f"sequential impulses, {form}"
+        self.smallest = SMALLEST_STEP if form == "stable" else 1.0
         self.settings = {} if sweeps is None else {"sweeps": sweeps}
         problem = Problem.of(motion, sweeps=sweeps, tolerance=tolerance)
         self._given = problem, zeros(Space, problem.sizes)
@@ -111,10 +114,15 @@ class Stepper(Moves):
         """The run starts again: no step before it counts."""
         self.state.status[COUNTS] = 0.0
 
-    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+    def take(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps ``begin`` ... ``end`` - 1; the number of the first that cannot be, or end."""
-        stable = self._form == "stable"
-        return int(advance(self.state, step, begin, end, every, stable, *self._given, records))
+        self._whole = step
+        return super().take(time, step, begin, end, every, records)
+
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """The same of whole steps, or of a part of one."""
+        how = self._form == "stable", step == self._whole
+        return int(advance(self.state, step, begin, end, every, *how, *self._given, records))
 
     def record(self) -> Array:
         """The present state's record (W,)."""
@@ -137,10 +145,6 @@ class Stepper(Moves):
         rows[:, STRAIN], rows[:, DISSIPATED] = records[:, -2], records[:, -1]
         return z[:, system.layout.poses], rows
 
-    def counted(self, steps: int) -> dict[str, int]:
-        """What was counted, by name."""
-        return dict(zip(COUNTERS, self.counters[: len(COUNTERS)].tolist(), strict=True))
-
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""
         return REASONS[self._form]
@@ -159,16 +163,10 @@ def _unresolved(scene: Scene, start: Start, step: float) -> str:
     )
 
 
-def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
-    """Return the limit 2 / omega [s] of the step of the published form.
-
-    omega is the highest frequency about the static state at a rotation [rad]; None drives no rotation.
-    """
-    mechanism = pivot.in_motion()
-    system = compile_scene(mechanism.released())
-    z = static_state(mechanism, rotation)[: system.layout.size]
-    highest = linear_modes(system, z)[0][-1]
-    return STABILITY_LIMIT / math.sqrt(highest)
+def stability_limit(pivot: Mechanism) -> float:
+    """Return the limit 2 / omega [s] of the step of the published form; omega: highest frequency at rest."""
+    system = compile_scene(pivot.in_motion().released())
+    return STABILITY_LIMIT / highest_frequency(set_in_motion(system), system.rest)
 
 
 def solve_impulses(

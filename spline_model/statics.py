@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,46 +43,7 @@ METHODS = ("condensed", "multipliers")
 CONTROLS = ("load", "arc-length")
 
 
-def solve_statics(pivot: Mechanism, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
-    """Rotate the body of a pivot from 0 to `rotation` in equal increments.
-
-    Parameters
-    ----------
-    pivot : Mechanism
-    rotation : float or sequence of float, rad
-        End of the path, or ends of several legs, one after the other.
-    options
-        Keywords of `solve_mechanism`: `increments`, `order`, `method`, `accuracy` and more.
-
-    Returns
-    -------
-    StaticSolution
-        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
-
-    Raises
-    ------
-    InvalidParameter, ConvergenceError
-        As in `solve_mechanism`.
-
-    References
-    ----------
-    Valentini and Pezzuti (2013), Eq 11, the bordered system.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
-
-    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
-    >>> path.torque.shape
-    (6,)
-    >>> print(f"{path.torque[-1]:.4f} N m")
-    0.1633 N m
-    """
-    finite_numbers("rotation", rotation, "rad")  # a pivot is always driven
-    return solve_mechanism(pivot, rotation=rotation, **options)
-
-
-def solve_mechanism(
+def solve_statics(
     mechanism: Mechanism,
     *,
     body: str | None = None,
@@ -138,7 +99,7 @@ def solve_mechanism(
     Returns
     -------
     StaticSolution
-        S states; arrays as in `solve_statics`.
+        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
 
     Raises
     ------
@@ -149,13 +110,17 @@ def solve_mechanism(
 
     References
     ----------
-    Riks, Journal of Applied Mechanics 39 (1972) 1060, for the arc length.
+    Valentini and Pezzuti (2013), Eq 11, for the bordered system; Riks, Journal of Applied Mechanics 39 (1972)
+    1060, for the arc length.
 
     Examples
     --------
     With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
 
-    >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
+    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
+    >>> print(f"{path.torque[-1]:.4f} N m")
+    0.1633 N m
+    >>> solve_statics(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
     [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_mechanism(mechanism)
@@ -302,7 +267,7 @@ def static_state(
 
     The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
     pre-strain act in full; the multipliers of released displacements are excluded. starts: as in
-    ``solve_mechanism``.
+    ``solve_statics``.
     """
     path = settle(mechanism, rotation, increments, body, starts=starts)
     z, scene = path.states[-1], path.system.scene
@@ -322,7 +287,7 @@ def settle(
     """Return the path to that state at a rotation [rad], with the mechanism's own control points."""
     grid = mechanism.design.discretisation
     grown = rotation is not None or bool(mechanism.scene.of(Load) or mechanism.scene.of(Driven))
-    return solve_mechanism(
+    return solve_statics(
         mechanism.on(grid.segments, grid.points),
         rotation=rotation,
         increments=increments if grown else 1,

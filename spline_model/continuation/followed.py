@@ -17,9 +17,9 @@ from spline_model import checks
 from spline_model.basis import Bezier
 from spline_model.compile import System
 from spline_model.effects import Bending, Stretching
-from spline_model.followers import Followers
 from spline_model.frames import Frames, carry, fold, spread
 from spline_model.paper import RIGIDITY, SPEED, evaluate, strips_of
+from spline_model.tables import Followers
 
 Array = NDArray[np.float64]
 

@@ -5,116 +5,65 @@ B: its inner points i follow from its four end points p, which are last in the o
 
     A_i = -B_ii^-1 f_i - W A_p,   W = B_ii^-1 B_ip,   (B_pp - B_pi W) A_p = -(f_p - W^T f_i),
 
-whose accelerations are A_p = T (s_A'', s_B'', bodies'') + terms quadratic in the rates. s_A, s_B and the
-axial forces of strips that cannot stretch are eliminated, and the bodies' small system remains.
-
-Axial forces follow at each mode from its strain over its compliance. Of a strip that cannot stretch they
-are unknown, and what a mode of them asks of the accelerations of the control points,
-
-    sum b A = -rest,   b = int mode t dC' / dP,   rest = int mode (|dC'/dt|^2 - (t . dC'/dt)^2) / |C'|
-                                                         + 2 O (its strain's rate) + O^2 (its strain),
-
-keeps its strain at zero: the last two let what round-off and the step leave of it die out (Baumgarte,
-CMAME 1 (1972) 1). Its rows come with the inner points eliminated, and times a root of B_ii^-1 in them.
+whose accelerations are A_p = T (s_A'', s_B'', bodies'') + terms quadratic in the rates. s_A and s_B are
+eliminated, and the bodies' small system remains. Axial forces follow at each mode from its strain over its
+compliance.
 """
 
 from __future__ import annotations
 
 import math
 
-from spline_model.frames import carry, draw, fold_moving, spread
-from spline_model.reduced.arrays import ARMS
-from spline_model.reduced.assembly import place_of, scatter
+from spline_model.frames import draw, fold_moving, spread
+from spline_model.reduced.arrays import ARMS, FORCE
+from spline_model.reduced.assembly import begin, place_of, scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
 from spline_model.strip.element import (
-    CURL,
     FORCE_AT,
     GIVEN,
     GRADIENT,
-    HESSIAN_AT,
-    MODES,
     ON_POINTS,
-    POINTS,
-    PULL_AT,
     SPEED_AT,
     STRAIN,
     STRETCHING,
     WEIGHT,
 )
 from spline_model.strip.ends import move_points, place_in_frames, rates_of_end, to_ends, turned_frame
-from spline_model.strip.points import (
-    add_mode,
-    add_slopes,
-    couple,
-    curve_at,
-    flatten_at,
-    four,
-    lengths_at,
-    slopes_at,
-)
+from spline_model.strip.points import add_slopes, forces_of_strains, four, given_at, slopes_at, take_strains
 
 
 @part()
-def _push(s, a, grid, shape, strips, local):
+def _push(s, a, shape, strips, local):
     """The gradient of a placed strip, with the axial forces that its strains give."""
-    numbers, lanes, along, weights = strips.numbers[s], local.lanes[s], strips.along[s], shape.rule[WEIGHT]
-    d1, d2, gradient, modes = shape.curve[0], shape.curve[1], local.nodal[s, GRADIENT], grid.modes[s]
-    curve_at(local.nodal[s, POINTS], d1, d2, four(lanes, 0))
-    lengths_at(lanes[0], lanes[1], lanes[GIVEN], weights, numbers[STRAIN], lanes[SPEED_AT], lanes[PULL_AT])
-    force = lanes[FORCE_AT]
-    for p in range(force.size):
-        force[p] = 0.0
-    for k in range(a.size):
-        total = 0.0
-        for p in range(force.size):
-            total += modes[k, p] * lanes[PULL_AT, p]
-        a[k] = total * grid.stiffness[s, k]
-        add_mode(a[k], modes[k], force)
-    if along[0, CURL] > 0.0:
-        flatten_at(s, strips, lanes)
-    given = lanes[SPEED_AT], lanes[GIVEN], lanes[GIVEN + 1], lanes[GIVEN + 2], lanes[GIVEN + 4], force
+    numbers, lanes, gradient = strips.numbers[s], local.lanes[s], local.nodal[s, GRADIENT]
+    take_strains(s, shape, strips, local)
+    forces_of_strains(s, strips, local, a)
+    given_at(s, a, strips, lanes)
+    given = (
+        lanes[SPEED_AT],
+        lanes[GIVEN],
+        lanes[GIVEN + 1],
+        lanes[GIVEN + 2],
+        lanes[GIVEN + 4],
+        lanes[FORCE_AT],
+    )
     rows = four(lanes, 0) + four(lanes, 4) + given
-    slopes_at(strips.measure, numbers[STRAIN], numbers[STRETCHING], weights, *rows)
+    slopes_at(strips.measure, numbers[STRAIN], numbers[STRETCHING], shape.rule[WEIGHT], *rows)
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
-    add_slopes(d1.shape[0], d1, d2, four(lanes, 4), gradient)
+    add_slopes(shape.order.size, shape.curve[0], shape.curve[1], four(lanes, 4), gradient)
 
 
 @part()
-def _add_ties(s, tied, sharpness, grid, shape, strips, local, room):
-    """Rows and rests of what the ``tied`` axial forces keep, behind the strip's residual and rates (2 n).
-
-    sharpness: O [1/s].
-    """
-    lanes, along, d1, d2 = local.lanes[s], strips.along[s], shape.curve[0], shape.curve[1]
-    n, gauss = d1.shape[0], along.shape[0]
-    (tx, ty, rest, mode), rates = four(lanes, HESSIAN_AT), four(lanes, HESSIAN_AT + 4)
-    curve_at(room.along, d1, d2, rates)
-    for p in range(gauss):
-        inverse, weight = 1.0 / lanes[SPEED_AT, p], shape.rule[WEIGHT, p]
-        x, y, ux, uy = lanes[0, p] * inverse, lanes[1, p] * inverse, rates[0][p], rates[1][p]
-        along_it, across = x * ux + y * uy, x * uy - y * ux
-        tx[p], ty[p] = weight * x, weight * y
-        rest[p] = weight * (across * across * inverse + 2.0 * sharpness * along_it)
-        rest[p] += sharpness * sharpness * lanes[PULL_AT, p]
-    for k in range(tied):
-        room.rest[k] = 0.0
-        for p in range(gauss):
-            mode[p] = along[p, MODES + k]
-            room.rest[k] += mode[p] * rest[p]
-        couple(n, grid.ties[s], mode, (tx, ty), room.rows[s, k])
-
-
-@part()
-def _set_mass(e, f, m, ends, tip, root, first, h):
+def _set_mass(e, f, m, ends, tip, root, h):
     """Upper mass matrix T^T m T of the end points at an end e and at f, 0 the root and 1 the tip.
 
-    Bodies follow from the place ``first`` on, that of the tip first.
+    Bodies follow behind s_A and s_B, that of the tip first.
     """
     x, y, lever, far = ends[2 * e], ends[2 * e + 1], 8 - 4 * e, 8 - 4 * f
     ii, io, oi, oo = m[e, f], m[e, 3 - f], m[3 - e, f], m[3 - e, 3 - f]
-    mine, other = first if e else first + 3 * tip, first if f else first + 3 * tip
+    mine, other = 2 if e else 2 + 3 * tip, 2 if f else 2 + 3 * tip
     if f >= e:
         h[e, f] = ii * (x * ends[2 * f] + y * ends[2 * f + 1])
     if not (tip if f else root):
@@ -149,16 +98,15 @@ def _set_drift(s, at, w, strips, ends, drift):
 
 
 @part()
-def _strip_system(s, tied, grid, strips, local, room):
+def _strip_system(s, grid, strips, local, room):
     """The equations of a strip's ends in g and h, and their size; its inner points are eliminated."""
     force, follow, drift, m = local.nodal[s, GRADIENT], grid.follow[s], room.drift[s], grid.ends[s]
     count, tip, root = follow.shape[1], strips.tips[s] >= 0, strips.roots[s] >= 0
-    first, g, h, c, ends = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector, local.map[s]
-    size, inner = first + 3 * tip + 3 * root, room.inner
-    _set_mass(0, 0, m, ends, tip, root, first, h)
-    _set_mass(0, 1, m, ends, tip, root, first, h)
-    _set_mass(1, 0, m, ends, tip, root, first, h)
-    _set_mass(1, 1, m, ends, tip, root, first, h)
+    h, c, ends = room.h[s], room.covector, local.map[s]
+    _set_mass(0, 0, m, ends, tip, root, h)
+    _set_mass(0, 1, m, ends, tip, root, h)
+    _set_mass(1, 0, m, ends, tip, root, h)
+    _set_mass(1, 1, m, ends, tip, root, h)
     for p in range(4):
         x, y = -force[2 * (count + p)], -force[2 * (count + p) + 1]
         for i in range(count):
@@ -168,73 +116,41 @@ def _strip_system(s, tied, grid, strips, local, room):
             x -= m[p, q] * drift[2 * q]
             y -= m[p, q] * drift[2 * q + 1]
         c[2 * p], c[2 * p + 1] = x, y
-    to_ends(c, 0, ends, tip, root, g, 0, first)
-    if tied == 0:
-        return size
-    for i in range(count):
-        inner[2 * i] = inner[2 * i + 1] = 0.0
-        for j in range(count):
-            inner[2 * i] += grid.white[s, i, j] * force[2 * j]
-            inner[2 * i + 1] += grid.white[s, i, j] * force[2 * j + 1]
-    for a in range(tied):
-        row, mine, left, line = room.rows[s, a], size if a == 0 else a + 1, -room.rest[a], room.solved
-        for i in range(8):
-            left -= row[2 * count + i] * drift[i]
-        for i in range(2 * count):
-            left += row[i] * inner[i]
-        g[mine] = left
-        to_ends(row, 2 * count, ends, tip, root, line, 0, first)
-        for i in range(size):
-            if i < 2 or i >= first:
-                h[min(i, mine), max(i, mine)] = line[i]
-        for b in range(a, tied):
-            other, total = size if b == 0 else b + 1, 0.0
-            for i in range(2 * count):
-                total -= row[i] * room.rows[s, b, i]
-            h[min(mine, other), max(mine, other)] = total
-    return size + 1
+    to_ends(c, 0, ends, tip, root, room.g[s], 0, 2)
+    return 2 + 3 * tip + 3 * root
 
 
 @part()
-def _solve_ends(s, tied, poses, strips, room, push, a):
-    """A strip's s_A'' and s_B'', into ``solved``, from its bodies' and the rest of its equations; tied a."""
-    g, h, y, first = room.g[s], room.h[s], room.solved, 2 + max(tied - 1, 0)
-    tip, root = strips.tips[s], strips.roots[s]
-    size = first + 3 * (tip >= 0) + 3 * (root >= 0)
-    for i in range(first, size):
-        y[i] = push[place_of(i - first, tip, root, 0)]
-    if tied > 0:
-        y[size] = a[0] = room.load[poses + s]
-        size += 1
-    for i in range(first - 1, -1, -1):
+def _substitute(count, size, g, h, x):
+    """Solve the first ``count`` of eliminated equations for x (size,), whose other entries are known."""
+    for i in range(count - 1, -1, -1):
         total = g[i]
         for j in range(i + 1, size):
-            total -= h[i, j] * y[j]
-        y[i] = total / h[i, i]
-    for k in range(1, tied):
-        a[k] = y[k + 1]
+            total -= h[i, j] * x[j]
+        x[i] = total / h[i, i]
 
 
 @part()
-def _follow_ends(s, at, tied, a, grid, strips, local, room, push):
+def _solve_ends(s, size, strips, room, push):
+    """A strip's s_A'' and s_B'', into ``solved``, from its bodies' and the rest of its equations."""
+    for i in range(2, size):
+        room.solved[i] = push[place_of(i - 2, strips.tips[s], strips.roots[s], 0)]
+    _substitute(2, size, room.g[s], room.h[s], room.solved)
+
+
+@part()
+def _follow_ends(s, at, grid, strips, local, room, push):
     """Accelerations of a strip's own coordinates from those of its ends and bodies."""
-    count, force, pull, c = grid.follow.shape[2], local.nodal[s, GRADIENT], room.inner, room.along
+    count, force, c = grid.follow.shape[2], local.nodal[s, GRADIENT], room.along
     push[at + 2 * count], push[at + 2 * count + 1] = room.solved[0], room.solved[1]
     move_points(s, at, push, strips, local, c)
     for i in range(8):
         c[2 * count + i] += room.drift[s, i]
-    for i in range(2 * count):
-        pull[i] = 0.0
-        for k in range(tied):
-            pull[i] += a[k] * room.rows[s, k, i]
     for j in range(count):
         x = y = 0.0
         for q in range(count):
             x -= grid.inverse[s, j, q] * force[2 * q]
             y -= grid.inverse[s, j, q] * force[2 * q + 1]
-        for q in range(count * (tied > 0)):
-            x -= grid.white[s, q, j] * pull[2 * q]
-            y -= grid.white[s, q, j] * pull[2 * q + 1]
         for p in range(4):
             x -= grid.follow[s, p, j] * c[2 * (count + p)]
             y -= grid.follow[s, p, j] * c[2 * (count + p) + 1]
@@ -242,59 +158,38 @@ def _follow_ends(s, at, tied, a, grid, strips, local, room, push):
 
 
 @part()
-def _solve_bodies(poses, tangent, load, push):
-    """Accelerations of the bodies, and in place of the load the axial forces beside them; upper tangent."""
-    eliminate(load.size, load.size, load, tangent)
-    for i in range(load.size - 1, -1, -1):
-        for j in range(i + 1, load.size):
-            load[i] -= tangent[i, j] * load[j]
-        load[i] /= tangent[i, i]
-        if i < poses:
-            push[i] = load[i]
-
-
-@part()
-def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
-    """Fill the accelerations (Y,) and the axial forces in y at y with rates w; sharpness: O [1/s]."""
+def accelerate(y, w, grid, arrays, masses, room, push):
+    """Fill the accelerations (Y,) and the axial forces in y at y with rates w."""
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     poses, n, modes = bodies.rest.size, shape.order.size, strips.compliance.shape[1]
     own, tangent, load = 2 * n - 6, room.tangent, room.load
-    arms = arrays.space.vectors[ARMS]
-    carry(y, bodies.frames, arms)
+    arms, pull = arrays.space.vectors[ARMS], arrays.space.vectors[FORCE]
+    begin(y, 0.0, bodies, arrays.space)
     spread(w, bodies.frames, arms)
     for b in range(poses // 3):
         room.turns[b, 0], room.turns[b, 1] = math.cos(y[3 * b + 2]), math.sin(y[3 * b + 2])
-    for i in range(load.size):
-        load[i] = bodies.weight[i] if i < poses else 0.0
-        for j in range(i, load.size):
+    for i in range(poses):
+        load[i] = -pull[i]
+        for j in range(i, poses):
             tangent[i, j] = 0.0
-        tangent[i, i] = masses.inertia[i] if i < poses else 0.0
-    for i in range(bodies.springs.shape[0]):
-        for j in range(bodies.springs.shape[0]):
-            load[i] -= bodies.springs[i, j] * (y[j] - bodies.rest[j])
+        tangent[i, i] = masses.inertia[i]
     for s in range(strips.roots.size):
-        at, tied = poses + s * (own + modes), grid.tied[s]
-        a = y[at + own : at + own + modes]
-        turned_frame(strips.roots[s], y, grid.frames[s, 0], room.turns, room.ends[0])
-        turned_frame(strips.tips[s], y, grid.frames[s, 1], room.turns, room.ends[1])
+        at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
+        turned_frame(root, y, grid.frames[s, 0], room.turns, room.ends[0])
+        turned_frame(tip, y, grid.frames[s, 1], room.turns, room.ends[1])
         place_in_frames(s, y[at : at + own], room.ends[0], room.ends[1], strips, local)
-        _push(s, a, grid, shape, strips, local)
+        _push(s, y[at + own : at + own + modes], shape, strips, local)
         _set_drift(s, at + own - 2, w, strips, local.map[s], room.drift[s])
-        if tied > 0:
-            move_points(s, at, w, strips, local, room.along)
-            _add_ties(s, tied, sharpness, grid, shape, strips, local, room)
-        elif grid.outer:
-            tangent[poses + s, poses + s] = -1.0
-        size, first = _strip_system(s, tied, grid, strips, local, room), 2 + max(tied - 1, 0)
-        eliminate(first, size, room.g[s], room.h[s])
-        scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
+        size = _strip_system(s, grid, strips, local, room)
+        eliminate(2, size, room.g[s], room.h[s])
+        scatter(2, size, tip, root, poses, room.g[s], room.h[s], load, tangent)
     if bodies.frames.place.size > 0:
         fold_moving(w, tangent, load, bodies.frames, arms)
-    _solve_bodies(poses, tangent, load, push)
+    eliminate(poses, poses, load, tangent)
+    _substitute(poses, poses, load, tangent, push)
     spread(push, bodies.frames, arms)
     draw(w, push, bodies.frames, arms)
     for s in range(strips.roots.size):
-        at, tied = poses + s * (own + modes), grid.tied[s]
-        a = y[at + own : at + own + modes]
-        _solve_ends(s, tied, poses, strips, room, push, a)
-        _follow_ends(s, at, tied, a, grid, strips, local, room, push)
+        size = 2 + 3 * (strips.tips[s] >= 0) + 3 * (strips.roots[s] >= 0)
+        _solve_ends(s, size, strips, room, push)
+        _follow_ends(s, poses + s * (own + modes), grid, strips, local, room, push)

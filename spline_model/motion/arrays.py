@@ -98,9 +98,9 @@ def _parts(model: Reduced, matrix: Array) -> tuple[Array, Array, Array]:
 class State(NamedTuple):
     """Where the mechanism is, and how it came there; S strips, Q coordinates of bodies, Y of all.
 
-    record holds y, rate and velocity: the bodies' poses, own coordinates and axial forces of the strips;
-    velocity of the bodies and of the control points. acceleration, push: of control points and bodies; curve:
-    C', C'' and |C'|; map: of the ends; totals: work of loads and drives and energy dissipated.
+    y: the bodies' poses, own coordinates and axial forces of the strips; rate, velocity: of the bodies and of
+    the control points, which stand in a record with y. acceleration, push: of control points and bodies;
+    curve: C', C'' and |C'|; map: of the ends; totals: work of loads and drives and energy dissipated.
     """
 
     y: Annotated[Array, "Y"]
@@ -111,17 +111,6 @@ class State(NamedTuple):
     curve: Annotated[Array, "S G 5"]
     map: Annotated[Array, "S 16"]
     totals: Annotated[Array, "2"]
-    record: Annotated[Array, "0"]
-
-    @classmethod
-    def of(cls, sizes: dict[str, int]) -> State:
-        """Return one at zero; sizes: of what the letters stand for."""
-        state = zeros(cls, sizes)
-        leading = state[:RECORDED]
-        record = np.zeros(sum(each.size for each in leading))
-        parts = np.split(record, np.cumsum([each.size for each in leading])[:-1])
-        y, rate, velocity = (part.reshape(each.shape) for part, each in zip(parts, leading, strict=True))
-        return state._replace(record=record, y=y, rate=rate, velocity=velocity)
 
 
 class Scratch(NamedTuple):
@@ -132,9 +121,9 @@ class Scratch(NamedTuple):
     and loads; t: the tangent in x', y', x'', y'' at a Gauss point; lost: by the strips, over the step; blocks
     xx, xy, yx, yy of the tangent, a line of them; half: these in control points, ends' rows in coordinates;
     pull, along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the
-    strips condensed; moved: see ``spline_model.motion.step``; load, turned: loads and followers on bodies;
-    system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of frames; follow:
-    values of followers.
+    strips condensed, which tangent solves; moved: see ``spline_model.motion.step``; load, turned: loads and
+    followers on bodies; change: of a strip; held: 1 where a drive or a body holds; arms, ends: of frames;
+    follow: values of followers.
     """
 
     dy: Annotated[Array, "Y"]
@@ -162,10 +151,7 @@ class Scratch(NamedTuple):
     moved: Annotated[Array, "4 Q"]
     turned: Annotated[Array, "Q"]
     load: Annotated[Array, "Q"]
-    system: Annotated[Array, "Q' Q'"]
-    x: Annotated[Array, "Q'"]
     change: Annotated[Array, "E"]
-    free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
     arms: Annotated[Array, "Q"]
     ends: Annotated[Array, "Q"]

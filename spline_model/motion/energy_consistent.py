@@ -18,17 +18,18 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
+from spline_model.motion.arrays import RECORDED, Masses, Scratch, State, sizes_of, zeros
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, MOVED, REFUSED, STEPS, WHOLE, newton
 from spline_model.motion.strip import keep_curve, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
+from spline_model.reduced.assembly import begin
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
 from spline_model.strip.compiled import copy, kernel, part
-from spline_model.strip.element import SPEED, SPEED_AT
+from spline_model.strip.element import ON_POINTS, POINTS, SPEED, SPEED_AT
 from spline_model.strip.ends import place_points
 from spline_model.strip.points import evaluate_residual, forces_of_strains, take_strains
 
@@ -85,24 +86,35 @@ def _accept(h, active, state, arrays, masses, work):
     copy(work.y, state.y)
 
 
+@part()
+def book(y, rate, strips_kinetic, potential, totals, masses, arrays, row):
+    """Fill the record of a state whose points are placed: y, rates of the bodies and, last, energies in EI/L.
+
+    These are kinetic energy, potential of the weight, energy of strains and springs, work, losses.
+    strips_kinetic: kinetic energy of the strips; potential: of weight, strains and springs.
+    """
+    kinetic, weight, last = strips_kinetic, 0.0, row[row.size - ENERGIES :]
+    copy(y, row)
+    copy(rate, row[y.size :])
+    for i in range(rate.size):
+        kinetic += 0.5 * masses.inertia[i] * rate[i] * rate[i]
+        weight -= arrays.bodies.weight[i] * y[i]
+    for s in range(arrays.strips.roots.size):
+        for i in range(2 * arrays.shape.order.size):
+            weight -= arrays.strips.numbers[s, ON_POINTS + i] * arrays.local.nodal[s, POINTS, i]
+    last[0], last[1], last[2], last[3], last[4] = kinetic, weight, potential - weight, totals[0], totals[1]
+
+
 @kernel()
 def store(state, arrays, masses, row):
     """Keep map and curve of a state that is given by its coordinates, and fill its record.
 
-    It is what ``State.record`` holds, and energies in EI/L: kinetic energy, potential of the weight, energy
-    of strains and springs, work, losses.
+    It is that of ``book``, with the velocity of the control points before the energies.
     """
-    bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
-    out, spare, n, at = arrays.space.out, arrays.space.states[SPARE], shape.order.size, state.record.size
+    strips, shape, local, points = arrays.strips, arrays.shape, arrays.local, state.velocity.shape[1]
+    out, spare, n = arrays.space.out, arrays.space.states[SPARE], shape.order.size
     own, modes, kinetic = 2 * n - 6, strips.compliance.shape[1], 0.0
-    out[BENDING] = out[AXIAL] = out[DEAD] = 0.0
-    for i in range(state.rate.size):
-        kinetic += 0.5 * masses.inertia[i] * state.rate[i] * state.rate[i]
-        out[DEAD] -= bodies.weight[i] * state.y[i]
-    for i in range(bodies.springs.shape[0]):
-        for j in range(bodies.springs.shape[0]):
-            moved = (state.y[i] - bodies.rest[i]) * (state.y[j] - bodies.rest[j])
-            out[AXIAL] += 0.5 * bodies.springs[i, j] * moved
+    begin(state.y, 0.0, arrays.bodies, arrays.space)
     for s in range(strips.roots.size):
         first = state.rate.size + s * (own + modes)
         a = spare[first + own : first + own + modes]
@@ -112,10 +124,9 @@ def store(state, arrays, masses, row):
         forces_of_strains(s, strips, local, a)
         evaluate_residual(s, a, n, shape, strips, local, out)
         kinetic += 0.5 * quadratic(masses.points[s], state.velocity[s])
-    for i in range(at):
-        row[i] = state.record[i]
-    row[at], row[at + 1], row[at + 2] = kinetic, out[DEAD], out[BENDING] + out[AXIAL]
-    row[at + 3], row[at + 4] = state.totals[0], state.totals[1]
+        copy(state.velocity[s], row[state.y.size + state.rate.size + s * points :])
+    potential = out[BENDING] + out[AXIAL] + out[DEAD]
+    book(state.y, state.rate, kinetic, potential, state.totals, masses, arrays, row)
 
 
 @kernel()
@@ -124,14 +135,6 @@ def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance
 
     records: filled at the ends of steps whose number ``every`` divides.
     """
-    for i in range(work.held.size):
-        work.held[i] = 0
-    for d in range(active.size):
-        if active[d] == 1:
-            work.held[masses.drive_at[d]] = 1
-    for f in range(masses.frames.place.shape[0]):
-        for k in range(masses.frames.place[f, 2]):
-            work.held[masses.frames.place[f, 0] + k] = 1
     for k in range(begin, end):
         now = time + k * step
         solved = newton(now, step, active, state, arrays, masses, tolerance, work, counters)
@@ -180,11 +183,12 @@ class Stepper(Moves):
         self.motion = start.motion
         self.model = model = require_reduced(self.motion.system)
         self._begin()
-        self.state, self._work = State.of(self._sizes), zeros(Scratch, self._sizes)
+        self.state, self._work = zeros(State, self._sizes), zeros(Scratch, self._sizes)
+        self._work.held[self._masses.frames.carried] = 1
         self.state.y[:] = from_unknowns(model, start.z)
         self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
         self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
-        self.width = self.state.record.size + ENERGIES
+        self.width = sum(each.size for each in self.state[:RECORDED]) + ENERGIES
         self.record()
 
     def _begin(self) -> None:
@@ -243,7 +247,11 @@ class Stepper(Moves):
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
+        if not len(self.active):
+            return
         before, self.active = self.active, self.motion.drives_at(time + 0.5 * span)
+        held = self._work.held
+        held[self._masses.drive_at], held[self._masses.drive_at[self.active == 1]] = 0, 1
         if not self.active.any():
             return
         (z,), (v,), _ = self.look()

@@ -8,11 +8,10 @@ for one evaluation. The rates that A depends on, by centripetal parts only, are 
 Wisdom, Holman and Touma, Fields Inst Comm 10 (1996) 217; Hairer, McLachlan and Skeel, ESAIM: M2AN 43
 (2009) 631.
 
-omega is the highest frequency, an axial one; of strips that cannot stretch a bending one, so that their
-steps are longer. Clamps hold because they are solved, not enforced. Energy is not kept to round-off: that of
-Table 1 with six control points changes by 1.5e-4 over 0.05 s at steps of 5 microseconds.
-Of strips that cannot stretch the leapfrog leaves the correction out: off the states of a step their length is
-not kept, so that it would be of first order. One evaluation, second order, stable up to 2.
+omega is the highest frequency, an axial one. Clamps hold because they are solved, not enforced. Energy is not
+kept to round-off: that of Table 1 with six control points changes by 1.5e-4 over 0.05 s at steps of 5
+microseconds.
+Strips that cannot stretch are refused: off the states of a step nothing keeps their length.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
 from spline_model.motion import energy_consistent
 from spline_model.motion.acceleration import accelerate
-from spline_model.motion.arrays import Masses, Places, sizes_of, zeros
+from spline_model.motion.arrays import Masses, zeros
 from spline_model.motion.energy_consistent import forward, store
 from spline_model.motion.moves import STEP
 from spline_model.motion.start import Motion, Start
@@ -40,68 +39,49 @@ Array = NDArray[np.float64]
 
 NAME = "leapfrog"
 """What the integrator is called."""
-STABILITY_LIMIT, PLAIN_LIMIT = 12.0**0.5, 2.0
-"""omega h up to which a step does not amplify an undamped oscillation, with two evaluations and with one."""
+STABILITY_LIMIT = 12.0**0.5
+"""omega h up to which a step does not amplify an undamped oscillation."""
 PART = 0.9
 """Default step over the longest stable one, which is that of the highest frequency at start and at rest:
 stress stiffens the strips on the way."""
 LARGEST_GAIN = 1e-2
 """Of energy over that at the start: it is kept in the limit of short steps only."""
-SHARPNESS = 0.1
-"""O h of inextensible strips: the strain that remains after a step decays over a few steps."""
 
 
 class _Grid(NamedTuple):
     """Constants of S strips with I inner points.
 
-    frames (S, 2, 4) point and direction of root and tip in the frame of their body or the ground; modes
-    (S, K, G) and stiffness (S, K) of the axial forces; inverse (S, I, I) B_ii^-1, white its root C^T,
-    C C^T = B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the end points' mass; ties (S, n, G) d1 of the end
-    points less W^T of the inner ones, and C^T of these; tied (S,) leading axial forces that hold the length;
-    outer: 1 with any, the first stays with the bodies.
+    frames (S, 2, 4) point and direction of root and tip in the frame of their body or the ground; inverse
+    (S, I, I) B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the end points' mass.
     """
 
     frames: Array
-    modes: Array
-    stiffness: Array
     inverse: Array
-    white: Array
     follow: Array
     ends: Array
-    ties: Array
-    tied: Places
-    outer: int
 
     @classmethod
     def of(cls, model: Reduced, masses: Masses) -> _Grid:
         """The constants of strips with mass."""
-        c = model.strips.compliance
-        inner, mass, d1 = masses.points.shape[1] - 4, masses.points, model.shape.curve[0]
+        inner, mass = masses.points.shape[1] - 4, masses.points
         inverse = np.asarray(np.linalg.inv(mass[:, :inner, :inner]), dtype=float)
         across = mass[:, :inner, inner:]
-        follow, white = inverse @ across, np.linalg.cholesky(inverse).transpose(0, 2, 1)
-        at_ends = d1[inner:] - follow.transpose(0, 2, 1) @ d1[:inner]
-        frames = np.stack((model.strips.root, model.strips.tip), axis=1)[:, :, [0, 1, 2, 2]]
+        follow = inverse @ across
+        frames = np.stack((model.strips.root, model.strips.tip), axis=1).take([0, 1, 2, 2], axis=2)
         frames[..., 2], frames[..., 3] = np.cos(frames[..., 2]), np.sin(frames[..., 3])
-        tied = np.cumprod(c == 0.0, axis=1).sum(axis=1).astype(np.int64)
         return cls(
             frames=frames,
-            modes=np.ascontiguousarray(model.strips.modes.transpose(0, 2, 1)),
-            stiffness=1.0 / np.where(c > 0.0, c, np.inf),
             inverse=inverse,
-            white=np.ascontiguousarray(white),
             follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
             ends=mass[:, inner:, inner:] - across.transpose(0, 2, 1) @ follow,
-            ties=np.concatenate((white @ d1[:inner], at_ends), axis=1),
-            tied=tied,
-            outer=int(tied.any()),
         )
 
 
 class _Room(NamedTuple):
     """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean of a
     step; turns: cosine and sine of the bodies; ends: frames; drift: accelerations of the end points by the
-    rates; rows, rest: of what tied forces keep; g, h, solved of a strip; tangent, load of the bodies.
+    rates; covector of the end points, along: of all points; g, h, solved of a strip; tangent, load of the
+    bodies.
     """
 
     x: Annotated[Array, "Y"]
@@ -111,23 +91,13 @@ class _Room(NamedTuple):
     turns: Annotated[Array, "B 2"]
     ends: Annotated[Array, "2 6"]
     drift: Annotated[Array, "S 8"]
-    rows: Annotated[Array, "S K 2n"]
-    rest: Annotated[Array, "K"]
     covector: Annotated[Array, "8"]
     along: Annotated[Array, "2n"]
-    inner: Annotated[Array, "2n"]
-    g: Annotated[Array, "S E"]
-    h: Annotated[Array, "S E E"]
-    solved: Annotated[Array, "E"]
-    tangent: Annotated[Array, "Q' Q'"]
-    load: Annotated[Array, "Q'"]
-
-    @classmethod
-    def of(cls, model: Reduced, masses: Masses, grid: _Grid) -> _Room:
-        """Working arrays."""
-        sizes = sizes_of(model, masses)
-        sizes |= {"B": sizes["Q"] // 3, "E": 8 + sizes["K"], "Q'": sizes["Q"] + sizes["S"] * grid.outer}
-        return zeros(cls, sizes)
+    g: Annotated[Array, "S 8"]
+    h: Annotated[Array, "S 8 8"]
+    solved: Annotated[Array, "8"]
+    tangent: Annotated[Array, "Q Q"]
+    load: Annotated[Array, "Q"]
 
 
 @part()
@@ -145,13 +115,13 @@ def _start_stage(stage, h, y, w, push, room):
 
 
 @part()
-def _end_stage(stage, last, h, w, push, room):
+def _end_stage(stage, h, w, push, room):
     """What a stage adds."""
     mean = room.mean
     for i in range(w.size):
         if stage < 0:
             mean[i] = w[i] + 0.5 * h * push[i]
-        elif last:
+        elif stage == 1:
             mean[i] += h * push[i]
             w[i] = mean[i] - 0.5 * h * push[i]
 
@@ -172,18 +142,18 @@ def _show(w, arrays, room, state):
 
 
 @kernel()
-def _run(stages, h, every, w, push, grid, arrays, masses, room, state, records):
-    """Fill the rows of the records, ``every`` steps of that many stages apart; returns the rows filled.
+def _run(h, every, w, push, grid, arrays, masses, room, state, records):
+    """Fill the rows of the records, ``every`` steps apart; returns the rows filled.
 
     A state that diverges or is no strip's ends the run.
     """
     y = state.y
     for row in range(records.shape[0]):
         for step in range(every):
-            for stage in range(-1 if row + step == 0 else 0, stages):
+            for stage in range(-1 if row + step == 0 else 0, 2):
                 _start_stage(stage, h, y, w, push, room)
-                accelerate(room.x, room.u, SHARPNESS / h, grid, arrays, masses, room, push)
-                _end_stage(stage, stage == stages - 1, h, w, push, room)
+                accelerate(room.x, room.u, grid, arrays, masses, room, push)
+                _end_stage(stage, h, w, push, room)
             largest = 0.0
             for i in range(y.size):
                 moved = abs(y[i]) + h * abs(w[i]) if w[i] != 0.0 else 0.0
@@ -198,10 +168,7 @@ def _run(stages, h, every, w, push, grid, arrays, masses, room, state, records):
 
 
 class Stepper(energy_consistent.Stepper):
-    """A free scene that the scheme advances, all steps in one call; the first that fails ends the run.
-
-    stages: evaluations of the accelerations in a step.
-    """
+    """A free scene that the scheme advances, all steps in one call; the first that fails ends the run."""
 
     name = NAME
     most_gain = LARGEST_GAIN
@@ -211,14 +178,12 @@ class Stepper(energy_consistent.Stepper):
         require_explicit(start.motion)
         super().__init__(start)
         model, masses, state = self.model, self._masses, self.state
-        grid = _Grid.of(model, masses)
-        self.stages = 1 if grid.outer else 2
         w = np.zeros(model.size)
         if start.v.any():
             w[:] = np.linalg.lstsq(coordinates_by(model, state.y), start.v, rcond=None)[0]
-        room = _Room.of(model, masses, grid)
+        room = zeros(_Room, self._sizes | {"B": self._sizes["Q"] // 3})
         self._start = start
-        self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
+        self._given = w, np.zeros_like(w), _Grid.of(model, masses), self._arrays, masses, room, state
 
     def default_step(self) -> float:
         """Return the default, or a stable step where that is shorter [s]."""
@@ -226,26 +191,20 @@ class Stepper(energy_consistent.Stepper):
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps from the first on; at any time, as nothing that acts has a history."""
-        return every * int(_run(self.stages, step, every, *self._given, records))
+        return every * int(_run(step, every, *self._given, records))
 
     def counted(self, steps: int) -> dict[str, int]:
         """Steps and evaluations of the good records."""
-        return {"steps": steps, "evaluations": self.stages * steps}
+        return {"steps": steps, "evaluations": 2 * steps}
 
     def stopped(self, record: float, reached: float, *, grows: bool) -> str:
         """Where it became unstable, and what helps."""
         return f"unstable near {record:.6g} s: the step is above the critical one; take a shorter step"
 
 
-def stability_limit(motion: Motion) -> float:
-    """Return the limit of omega h [1] up to which a step does not amplify an undamped oscillation of a
-    motion."""
-    return PLAIN_LIMIT if (np.diag(motion.rigidity) == 0.0).any() else STABILITY_LIMIT
-
-
 def critical_step(motion: Motion, z: Array) -> float:
     """Return the longest stable step [s], by the highest frequency at a state and at rest."""
-    return stability_limit(motion) / highest_frequency(motion, z)
+    return STABILITY_LIMIT / highest_frequency(motion, z)
 
 
 def highest_frequency(motion: Motion, z: Array) -> float:
@@ -256,9 +215,12 @@ def highest_frequency(motion: Motion, z: Array) -> float:
 
 def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
-    if motion.system.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
+    damped = motion.system.drag.size or motion.system.relaxation_time > 0.0
+    if damped or motion.drives.row.size or motion.loads.coordinate.size:
         expected = "energy (the default) for damping, loads, drives and supports"
         raise InvalidParameter("integrator", NAME, expected)
+    if motion.inextensible:
+        raise InvalidParameter("integrator", NAME, "energy (the default) for strips that cannot stretch")
     layout = motion.system.layout
     blocks = [motion.system.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):

@@ -26,7 +26,7 @@ from spline_model.effects import Spring
 from spline_model.errors import InvalidParameter
 from spline_model.motion import energy_consistent
 from spline_model.motion.arrays import Array, Places, zeros
-from spline_model.motion.energy_consistent import TOLERANCE, forward, standing, why
+from spline_model.motion.energy_consistent import TOLERANCE, book, forward, standing, why
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Motion, Start
 from spline_model.motion.step import (
@@ -47,7 +47,7 @@ from spline_model.reduced.equilibrium import entry
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.states import whole_tangents
 from spline_model.strip.compiled import copy, kernel, part
-from spline_model.strip.element import LAST, ON_POINTS, POINTS
+from spline_model.strip.element import LAST
 from spline_model.strip.ends import place_points
 
 STILL = 1e-6
@@ -296,26 +296,12 @@ def _settle(poses):
 
 @part()
 def _store(poses, masses, arrays, row):
-    """A record: y, the bodies' rates and its energies, as of ``energy_consistent.store``."""
-    bodies, strips = arrays.bodies, arrays.strips
-    shape, local = arrays.shape, arrays.local
-    y, rate, n = poses.y, poses.rate, shape.order.size
-    own, modes = 2 * n - 6, strips.compliance.shape[1]
-    kinetic = weight = 0.0
-    for i in range(y.size):
-        row[i] = y[i]
-    for i in range(rate.size):
-        row[y.size + i] = rate[i]
-        kinetic += 0.5 * masses.inertia[i] * rate[i] * rate[i]
-        weight -= bodies.weight[i] * y[i]
+    """A record: y, the bodies' rates and its energies."""
+    y, rate, strips, own = poses.y, poses.rate, arrays.strips, 2 * arrays.shape.order.size - 6
     for s in range(strips.roots.size):
-        at = rate.size + s * (own + modes)
-        place_points(s, y[at : at + own], y, strips, local)
-        for i in range(2 * n):
-            weight -= strips.numbers[s, ON_POINTS + i] * local.nodal[s, POINTS, i]
-    at = y.size + rate.size
-    row[at], row[at + 1], row[at + 2] = kinetic, weight, poses.energy[0] - weight
-    row[at + 3], row[at + 4] = poses.totals[0], poses.totals[1]
+        at = rate.size + s * (own + strips.compliance.shape[1])
+        place_points(s, y[at : at + own], y, strips, arrays.local)
+    book(y, rate, 0.0, poses.energy[0], poses.totals, masses, arrays, row)
 
 
 @kernel()
@@ -358,7 +344,7 @@ def _require_known(motion: Motion) -> None:
     beside = system.layout.poses.start + 3 * len(system.scene.own_bodies)
     across = any(any(spring.damping) and spring.other for spring in system.scene.of(Spring))
     for found, what, expected in (
-        (motion.damped, "strip_damping", "with it: massless strips have no rate"),
+        (system.relaxation_time > 0.0, "strip_damping", "with it: massless strips have no rate"),
         (across, "a damper between bodies", "for one in a motion"),
         (motion.drives.row.size > 0, "a drive", "for a driven motion"),
         (

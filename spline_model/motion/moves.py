@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from spline_model.motion.records import (
     first_gain,
 )
 from spline_model.motion.start import SAME, Array, Motion
-from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS, WHOLE
+from spline_model.motion.step import HALVED, WHOLE
 from spline_model.newton import Laps
 from spline_model.solution import Status
 
@@ -76,13 +77,15 @@ class Moves:
 
     name: of the scheme, settings: others that a trajectory has; state: arrays that a step changes.
     most_gain: of energy; smallest: part of a step that is taken at least where it fails, 1 if none is;
-    width: numbers of a record, of which the first are the poses in L and the last the energies in EI/L.
+    counts: names of the leading counters; width: numbers of a record, of which the first are the poses in L
+    and the last the energies in EI/L.
     """
 
     most_gain = MOST_GAIN
     smallest = SMALLEST_STEP
+    counts: tuple[str, ...] = ("steps", "halved_steps", "newton_iterations", "factorisations")
     name: str
-    settings: dict[str, Any] = {}  # noqa: RUF012 - nobody changes it
+    settings: Mapping[str, Any] = MappingProxyType({})
     state: Any
     motion: Motion
     counters: NDArray[np.int64]
@@ -160,15 +163,13 @@ class Moves:
 
     def shown(self, records: Array) -> tuple[Array, Array]:
         """Return poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records (R, W)."""
-        scales, bodies = self.motion.system.scales, len(self.motion.turns)
+        scales, bodies = self.motion.system.scales, len(self.motion.system.layout.bodies)
         poses = records[:, : 3 * bodies] * np.tile(scales.pose, bodies)
         return poses, records[:, -ENERGIES:] * scales.energy
 
     def counted(self, steps: int) -> dict[str, int]:
         """Return the counted iterations by name; steps: of the good records."""
-        places = {"steps": STEPS, "halved_steps": HALVED, "newton_iterations": NEWTON}
-        places["factorisations"] = FACTORISATIONS
-        return {name: int(self.counters[place]) for name, place in places.items()}
+        return dict(zip(self.counts, self.counters.tolist(), strict=False))
 
     def look(self) -> tuple[Array, Array, Array]:
         """Return unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, StripDamping
+from spline_model.effects import Bending
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
@@ -52,24 +52,14 @@ class Motion:
         return rigidity
 
     @property
-    def relaxation(self) -> Array:
-        """Relaxation time of the axial modes (M,) [s]."""
-        return np.full(len(self.rigidity), self.system.relaxation_time)
-
-    @property
-    def damped(self) -> bool:
-        """Whether strips have a relaxation time."""
-        return bool(self.system.scene.of(StripDamping))
+    def inextensible(self) -> bool:
+        """Whether a strip cannot stretch."""
+        return bool((np.diag(self.rigidity) == 0.0).any())
 
     @property
     def massless(self) -> bool:
         """Whether no strip has inertia, so that only the bodies' coordinates are dynamic."""
         return not self.system.mass[: self.system.layout.poses.start].any()
-
-    @property
-    def turns(self) -> Places:
-        """Places of the rotations in q."""
-        return np.array([start + 2 for start in self.system.layout.bodies.values()], dtype=np.int64)
 
     def later(self, time: float) -> Motion:
         """Return the motion with the clock set to ``time`` [s]: histories and drives are that far on."""
@@ -99,10 +89,14 @@ class Motion:
 
         z (N,): unknowns [m, rad, N]; active, before: drive rows (D,) that hold now and before; time [s].
         """
-        drives, origin = self.drives, self.drives.origin.copy()
-        for d in np.flatnonzero(active & ~before.astype(bool)):
-            origin[d] = z[drives.coordinate[d]] - factor_of(d, time, drives) * drives.target[d]
+        drives = self.drives
+        begun = z[drives.coordinate] - self._factors(time) * drives.target
+        origin = np.where(active > before, begun, drives.origin)
         return replace(self, drives=drives._replace(origin=origin))
+
+    def _factors(self, time: float) -> Array:
+        """Factors (D,) of the drives at an instant [s]."""
+        return np.array([factor_of(d, time, self.drives) for d in range(len(self.drives.row))])
 
     def catch(self, z: Array, v: Array, active: Places, time: float, span: float) -> tuple[Array, float]:
         """Return the velocity (Q,) that the active drives allow, and the kinetic energy that is lost [J].
@@ -112,13 +106,10 @@ class Motion:
         an inelastic catch.
         """
         drives, held, mass = self.drives, np.flatnonzero(active), self.system.mass
-        if not held.size:
-            return v, 0.0
         model, at = require_reduced(self.system), drives.coordinate[held]
         places = at - self.system.layout.poses.start
         by = coordinates_by(model, from_unknowns(model, z))
-        before, after = ([factor_of(d, instant, drives) for d in held] for instant in (time, time + span))
-        rates = np.subtract(after, before) / span * drives.target[held]
+        rates = (self._factors(time + span) - self._factors(time))[held] / span * drives.target[held]
         moved = by @ np.linalg.lstsq(by, v, rcond=None)[0]
         moved += by[:, places] @ ((rates - moved[at]) / by[at, places])
         free = np.delete(by, places, axis=1)

@@ -233,9 +233,10 @@ def solve_rows(count, matrix, x):
         inverse = 1.0 / matrix[i, i]
         for j in range(i + 1, count):
             factor = matrix[j, i] * inverse
-            x[j] -= factor * x[i]
-            for c in range(i + 1, count):
-                matrix[j, c] -= factor * matrix[i, c]
+            if factor != 0.0:
+                x[j] -= factor * x[i]
+                for c in range(i + 1, count):
+                    matrix[j, c] -= factor * matrix[i, c]
     for i in range(count - 1, -1, -1):
         for c in range(i + 1, count):
             x[i] -= matrix[i, c] * x[c]
@@ -245,34 +246,31 @@ def solve_rows(count, matrix, x):
 
 @called()
 def _improve(strips, masses, local, work):
-    """Newton's correction of dy from the assembled step; its size but for axial forces, or -1 if singular."""
-    poses, modes = masses.inertia.size, strips.compliance.shape[1]
-    own, outer, dy, free, x, count = work.line.size - 6, masses.outer, work.dy, work.free, work.x, 0
-    for i in range(free.size):
-        if i >= poses or work.held[i] == 0:
-            free[count] = i
-            count += 1
-    for i in range(count):
-        x[i] = -work.reduced[free[i]]
-        for j in range(count):
-            work.system[i, j] = work.tangent[free[i], free[j]]
-    if not solve_rows(count, work.system, x):
-        return -1.0
-    size = 0.0
-    for i in range(work.reduced.size):
-        work.reduced[i] = 0.0
-    for i in range(count):
-        work.reduced[free[i]] = x[i]
+    """Newton's correction of dy from the assembled step; its size but for axial forces, or -1 if singular.
+
+    The residual becomes the bodies' correction; held coordinates have none.
+    """
+    poses, modes, own, size = masses.inertia.size, strips.compliance.shape[1], work.line.size - 6, 0.0
+    outer, dy, tangent, x = masses.outer, work.dy, work.tangent, work.reduced
+    for i in range(x.size):
+        x[i] = -x[i]
     for i in range(poses):
-        dy[i] += work.reduced[i]
-        size = max(size, abs(work.reduced[i]))
-    spread(work.reduced, masses.frames, work.ends)
+        if work.held[i] == 1:
+            for j in range(x.size):
+                tangent[i, j] = tangent[j, i] = 0.0
+            tangent[i, i], x[i] = 1.0, 0.0
+    if not solve_rows(x.size, tangent, x):
+        return -1.0
+    for i in range(poses):
+        dy[i] += x[i]
+        size = max(size, abs(x[i]))
+    spread(x, masses.frames, work.ends)
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)
         g, h, change, right = work.g[s], work.h[s], work.change, work.right[s]
         for i in range(own, ends + outer):
-            change[i] = work.reduced[place_of(i - own, tip, root, poses + s * outer)]
+            change[i] = x[place_of(i - own, tip, root, poses + s * outer)]
         for i in range(own - 1, -1, -1):
             total = -g[i]
             for j in range(i + 1, ends + outer):

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from spline_model import checks
 from spline_model.compile import System
 from spline_model.continuation.followed import SMALLEST_MOMENT, Followed, Point
-from spline_model.followers import Followers
 from spline_model.frames import Frames
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import (
@@ -32,6 +31,7 @@ from spline_model.reduced.preload import Preload, act, apart
 from spline_model.reduced.states import gather, unknowns_of
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import ON_POINTS
+from spline_model.tables import Followers
 
 Array = NDArray[np.float64]
 
@@ -162,7 +162,7 @@ class Elements(Followed):
 
     def y(self, z: Array) -> Array:
         """Return the state (Y,) in the order of the elements, of unknowns z (N,) [m, rad, N]."""
-        return z[..., self.place]
+        return z.take(self.place, axis=-1)
 
     def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Fill gradient and tangent at z (N,); return bending and axial energy [J].

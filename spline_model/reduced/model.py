@@ -14,7 +14,6 @@ from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.effects.elastic import MEASURES
 from spline_model.errors import InvalidParameter
-from spline_model.followers import Followers
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import (
     Designs,
@@ -26,6 +25,7 @@ from spline_model.reduced.numbers import (
 )
 from spline_model.scene import Scene
 from spline_model.strip.element import Local, Shape, Strips
+from spline_model.tables import Followers
 
 Array = NDArray[np.float64]
 

@@ -72,8 +72,8 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:
     rows, arrays = model.system.once("rows", _Rows.of), model.arrays()
     z = np.zeros((len(y), model.system.layout.size), dtype=y.dtype)
     poses = 3 * len(model.system.scene.bodies)
-    y, reaction = np.ascontiguousarray(y), np.ascontiguousarray(reaction)
-    _fill_unknowns(y, reaction, poses, rows, model.to_modes, model.length, model.energy, arrays, z)
+    y, reaction, to_modes = (np.ascontiguousarray(each, y.dtype) for each in (y, reaction, model.to_modes))
+    _fill_unknowns(y, reaction, poses, rows, to_modes, model.length, model.energy, arrays, z)
     return z
 
 
@@ -124,7 +124,7 @@ def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
     """
     arrays = model.arrays()
     found, force = np.empty((len(y), *arrays.space.tangent.shape)), np.empty((len(y), len(model.bodies.load)))
-    _condense_all(y, load, arrays, found, force)
+    _condense_all(np.ascontiguousarray(y), np.array(load), arrays, found, force)
     followers = model.followers
     for row in range(len(y) * bool(followers.place.size)):
         followers.subtract(y[row], load[row], force[row], found[row])
@@ -149,7 +149,7 @@ def whole_tangents(model: Reduced, y: Array, load: Array) -> tuple[Array, Array]
     """
     count, size = y.shape
     gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
-    gather(y, load, model.arrays(), gradient, hessian)
+    gather(np.ascontiguousarray(y), np.array(load), model.arrays(), gradient, hessian)
     return gradient, hessian
 
 

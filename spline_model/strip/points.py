@@ -69,7 +69,7 @@ def lengths_at(x1, y1, speed, weights, strain, lengths, pulls):
 
 
 @part()
-def _given_at(s, a, strips, lanes):
+def given_at(s, a, strips, lanes):
     """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, N."""
     along = strips.along[s]
     for p in range(along.shape[0]):
@@ -79,24 +79,17 @@ def _given_at(s, a, strips, lanes):
         lanes[GIVEN, p], lanes[GIVEN + 1, p], lanes[GIVEN + 2, p] = at[SPEED], at[CURVATURE], at[RIGIDITY]
         lanes[FORCE_AT, p] = force
     if along[0, CURL].real > 0.0:
-        flatten_at(s, strips, lanes)
+        _flatten_at(s, strips, lanes)
 
 
 @part()
-def flatten_at(s, strips, lanes):
+def _flatten_at(s, strips, lanes):
     """Factors of ``curl_law`` at the Gauss points."""
     for p in range(lanes.shape[1]):
         at, x1, y1, x2, y2 = strips.along[s, p], lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
         phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
         factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP:MODES], at[CURL])
         lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
-
-
-@lane()
-def add_mode(a, mode, force):
-    """Add a mode of the axial force."""
-    for p in range(mode.size):
-        force[p] += a * mode[p]
 
 
 @lane()
@@ -127,7 +120,7 @@ def _laws_at(
     """The laws at the Gauss points; returns bending and axial energy.
 
     Filled are rows, times the weight: g, h, derivatives in (x', y', x'', y''); the unit tangent; |C'|; the
-    moment; derivatives of the axial energy in N. Behind them is what ``_given_at`` fills.
+    moment; derivatives of the axial energy in N. Behind them is what ``given_at`` fills.
     """
     bending = axial = 0.0
     for p in range(weights.size):
@@ -270,7 +263,7 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
     d1, d2 = shape.curve[0], shape.curve[1]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
     curve_at(points, d1, d2, four(lanes, 0))
-    _given_at(s, a, strips, lanes)
+    given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
     more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + (lanes[28], lanes[FORCE_AT])
     bending, axial = _laws_at(
@@ -293,7 +286,7 @@ def forces_at(s, a, strips, shape, local):
     """Axial force and moment of strip s, of whatever points, into FORCE_AT and MOMENT_AT of its lanes."""
     numbers, lanes, along = strips.numbers[s], local.lanes[s], strips.along[s]
     curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(lanes, 0))
-    _given_at(s, a, strips, lanes)
+    given_at(s, a, strips, lanes)
     for p in range(lanes.shape[1]):
         x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
         square, speed = x1 * x1 + y1 * y1, along[p, SPEED]

@@ -47,39 +47,39 @@ class CriticalLoad(Answer):
     the result of each.
 
     Attributes:
-        direction: of the force [rad], from x to y; held: whether the body is kept from turning.
+        force_direction: from x to y [rad]; held: whether the body is kept from turning.
         force: at which stability is lost [N], 0 where weight and pre-strain alone lose it; None where none is
-            found up to `reached`, the largest force that was borne [N].
-        turned: rotation of the body there [rad], NaN where weight alone is too much; turned_error: how far
-            the last two discretisations are apart in it [rad]; NaN where they are not resolved.
-        kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
-        uncertainty: relative, of force or share [1]; NaN if unknown.
-        soft, yields: force at which the rotation exceeds SOFT, and at which a strip yields [N], if no
-            critical load is found; None otherwise. softer: relative uncertainty of both [1].
+            found up to `borne`, the largest force that was borne [N].
+        rotation_rad: of the body there [rad], NaN where weight alone is too much; rotation_error: how far the
+            last two discretisations are apart in it [rad]; NaN where they are not resolved.
+        kind: of the critical point, or UNSTABLE. weight_share: of weight and pre-strain that acts there [1].
+        relative_error: of force or share [1]; NaN if unknown.
+        rotation_5_deg, yield_N: force at which the rotation exceeds SOFT, and at which a strip yields [N], if
+            no critical load is found; None otherwise. soft_relative_error: of both [1].
     """
 
     analysis = "critical load"
 
-    direction: float
+    force_direction: float
     held: bool
-    force: float | None
-    reached: float
-    turned: float
-    kind: str
-    preload: float
-    uncertainty: float
-    turned_error: float = math.nan
-    soft: float | None = None
-    yields: float | None = None
-    softer: float = math.nan
+    force: float | None = None
+    borne: float
+    rotation_rad: float
+    kind: str = NONE
+    weight_share: float = 1.0
+    relative_error: float = math.nan
+    rotation_error: float = math.nan
+    rotation_5_deg: float | None = None
+    yield_N: float | None = None
+    soft_relative_error: float = math.nan
 
     @property
     def value(self) -> float:
         """Number that discretisations are compared by: the share of the weight [1], force [N], or rotation
         [rad]."""
         if self.kind == UNSTABLE:
-            return self.preload
-        return self.turned if self.force is None else self.force
+            return self.weight_share
+        return self.rotation_rad if self.force is None else self.force
 
     def apart(self, other: "CriticalLoad") -> float:
         """Return the relative difference [1] to another discretisation; inf if the verdicts differ."""
@@ -93,11 +93,11 @@ class CriticalLoad(Answer):
     def verdict(self) -> str:
         """The result in words."""
         if not self.converged:
-            return f"stops at {self.reached:.6g} N"
+            return f"stops at {self.borne:.6g} N"
         if self.kind == UNSTABLE:
-            return f"{UNSTABLE}, at {100.0 * self.preload:.4g} % of weight and pre-strain"
+            return f"{UNSTABLE}, at {100.0 * self.weight_share:.4g} % of weight and pre-strain"
         return (
-            f"none up to {self.reached:.6g} N" if self.force is None else f"{self.kind} at {self.force:.6g} N"
+            f"none up to {self.borne:.6g} N" if self.force is None else f"{self.kind} at {self.force:.6g} N"
         )
 
 
@@ -223,15 +223,15 @@ def _agreed(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
         said = "; ".join(f"{_fineness(each.asked.settings)[0]}: {each.verdict}" for each in found)
         message = f"not resolved: {said}; {_fineness(last.asked.settings)[1]}"
         return replace(last, status="not_converged", message=message, force=None, kind=NONE)
-    last = replace(last, turned_error=abs(last.turned - found[-2].turned))
+    last = replace(last, rotation_error=abs(last.rotation_rad - found[-2].rotation_rad))
     if last.kind == NONE:
         return _softened(question, (*found[:-1], last))
     value, error = last.value, apart * last.value
     if isinstance(last.asked.settings, FeSettings) and _alike(found, ALIKE, AGREED):
         limit = extrapolate([np.array([each.value]) for each in found[-ALIKE:]])
         value, error = float(limit.value[0]), float(limit.uncertainty[0])
-    known: dict[str, Any] = {"preload" if last.kind == UNSTABLE else "force": value}
-    return replace(last, uncertainty=error / value, **known)
+    known: dict[str, Any] = {"weight_share" if last.kind == UNSTABLE else "force": value}
+    return replace(last, relative_error=error / value, **known)
 
 
 def _fineness(settings: Settings) -> tuple[str, str]:
@@ -253,21 +253,18 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
     found: dict[str, Any] = {
         "status": str(path.status.value),
         "message": "" if last == 1.0 else str(path.message),
-        "reached": size * last,
-        "force": None,
-        "turned": float(path.bodies[question.design.body][-1, 2]),
-        "kind": NONE,
-        "preload": 1.0,
+        "borne": size * last,
+        "rotation_rad": float(path.bodies[question.design.body][-1, 2]),
     }
     for point in lost[:1]:
         unstable, force = point.preload < 1.0, size * float(point.load_factor)
-        found = {"status": "converged", "message": "", "reached": force, "force": force} | {
-            "turned": math.nan if unstable else float(point.turns[place]),
+        found = {"status": "converged", "borne": force, "force": force} | {
+            "rotation_rad": math.nan if unstable else float(point.turns[place]),
             "kind": UNSTABLE if unstable else str(point.kind),
-            "preload": float(point.preload),
+            "weight_share": float(point.preload),
         }
-    known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
-    return CriticalLoad(asked=asked, solution=path, **known | found)
+    known: dict[str, Any] = {"force_direction": question.direction, "held": question.held}
+    return CriticalLoad(asked=asked, solution=path, **known, **found)
 
 
 def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
@@ -275,12 +272,11 @@ def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoa
     yields."""
     body = str(question.design.body)
     shares: dict[str, Callable[[Response], Any]] = {
-        "soft": lambda answer: np.abs(answer.bodies[body][:, 2]) / SOFT,
-        "yields": lambda answer: answer.yield_share,
+        "rotation_5_deg": lambda answer: np.abs(answer.bodies[body][:, 2]) / SOFT
     }
-    if any(strip.yield_strength is None for strip in question.design.strips):
-        del shares["yields"]
-    forces: dict[str, float | None] = {}
+    if all(strip.yield_strength is not None for strip in question.design.strips):
+        shares["yield_N"] = lambda answer: answer.yield_share
+    forces: dict[str, Any] = {}
     apart = [FOUND]
     for name, share in shares.items():
         coarse, fine = (_passing(question, each.asked.settings, share) for each in found[-2:])
@@ -288,24 +284,26 @@ def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoa
         if fine is not None:
             same = coarse == fine  # such as both passed without any force
             apart.append(0.0 if same else abs(coarse / fine - 1.0) if coarse and fine else math.nan)
-    softer = max(apart) if any(forces.values()) else math.nan
-    return replace(found[-1], soft=forces["soft"], yields=forces.get("yields"), softer=softer)
+    error = max(apart) if any(forces.values()) else math.nan
+    return replace(found[-1], soft_relative_error=error, **forces)
 
 
 def _passing(question: _Question, settings: Settings, share: Callable[[Response], Any]) -> float | None:
     """Return the force [N] at which a share of a limit first is 1, by solutions that end there; or None."""
 
-    def path(force: float) -> Any:
-        return share(Response.of(*question.path(settings, force))) - 1.0
+    def beyond(asked: Asked, path: Any) -> Any:
+        return share(Response.of(asked, path)) - 1.0
+
+    def left(force: float) -> Any:
+        return beyond(*question.path(settings, force))[-1]
 
     for size, asked, first in question.paths(settings):
-        known = share(Response.of(asked, first)) - 1.0
-        beyond = np.flatnonzero(known >= 0.0)
-        if beyond.size and beyond[0] > 0:
+        passed = np.flatnonzero(beyond(asked, first) >= 0.0)
+        if passed.size and passed[0] > 0:
             from scipy.optimize import brentq
 
-            below, above = ((beyond[0] - back) / INCREMENTS * size for back in (1, 0))
-            return float(brentq(lambda force: path(force)[-1], below, above, rtol=FOUND))
-        if beyond.size:
+            below, above = ((passed[0] - back) / INCREMENTS * size for back in (1, 0))
+            return float(brentq(left, below, above, rtol=FOUND))
+        if passed.size:
             return 0.0
     return None

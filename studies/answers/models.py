@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from studies.answers.settings import FeSettings, Settings
@@ -47,7 +47,7 @@ class Asked:
     @property
     def effects(self) -> tuple[str, ...]:
         """Names of the effects that the model uses."""
-        effects = getattr(self.modelled, "mechanism", self.modelled).effects
+        effects = self.modelled.effects
         return tuple(getattr(effects, "names", effects))
 
     def discretised(self, result: Any) -> dict[str, Any]:
@@ -73,11 +73,8 @@ class Asked:
             points = getattr(result, "control_points", chosen)
             made = asked.on(getattr(result, "segments", grid.segments), points)
             return made.in_motion() if self.moving else made
-        from fe_reference.refined import finer
-
-        for _ in getattr(result.estimate, "meshes", ())[1:]:
-            asked = finer(asked)
-        return asked
+        meshes = getattr(result.estimate, "meshes", ())
+        return replace(asked, elements=meshes[-1]) if meshes else asked
 
     def fields(self, result: Any, states: Any, analysis: str) -> Any:
         """Return the fields along the strips of states of a result, as `studies.answers.answer.Answer.along`.
@@ -108,7 +105,7 @@ class Asked:
         design = self.design
         given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
         with self.refusals():
-            return self.model.solve_mechanism(self.modelled, **{"body": design.body} | given)
+            return self.model.solve_statics(self.modelled, **{"body": design.body} | given)
 
 
 def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
@@ -119,11 +116,9 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
     """
     asked = Asked(design, settings, moving, None)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
+    grid = _keywords(asked.model, settings.keywords(), moving)
     with asked.refusals():
-        modelled = design.modelled(
-            asked.model, **scene, **_keywords(asked.model, settings.keywords(), moving)
-        )
-    return Asked(design, settings, moving, modelled)
+        return replace(asked, modelled=design.modelled(asked.model, **scene, **grid))
 
 
 def _keywords(model: Any, given: dict[str, Any], moving: bool) -> dict[str, Any]:

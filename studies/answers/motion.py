@@ -246,12 +246,8 @@ class Spectrum(Answer):
     @property
     def mode_bodies(self) -> Array:
         """(F, B, 3) displacement x, y and rotation of the bodies at unit modal mass."""
-        count, names = len(self.frequency), [body.name for body in self.design.bodies]
-        if hasattr(self.solution, "bodies"):
-            shapes = np.array([self.solution.bodies[name] for name in names])
-            return np.asarray(shapes.reshape(-1, count, 3).swapaxes(0, 1))
-        shapes = np.asarray(getattr(self.solution, "body_shapes", ()), dtype=float)
-        return shapes.reshape(count, len(names), 3)
+        shapes = np.array([*self.bodies.values()])
+        return shapes.reshape(len(shapes), len(self.frequency), 3).swapaxes(0, 1)
 
     def scale_of(self, state: int) -> float:
         """Return the factor of a mode at unit modal mass for its picture; zero of a mode that moves
@@ -262,9 +258,7 @@ class Spectrum(Answer):
     @property
     def body_shapes(self) -> Array:
         """Displacement (F, 3) x, y [m] and rotation [rad] of the driven or only body; zero without one."""
-        if self.body is None:
-            return np.zeros((len(self.frequency), 3))
-        return self.mode_bodies[:, [each.name for each in self.design.bodies].index(self.body)]
+        return np.zeros((len(self.frequency), 3)) if self.body is None else self.bodies[self.body]
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:

@@ -214,6 +214,8 @@ def swing_reference(
 ) -> SwingReference:
     """Release `problem` from the end of its path on the meshes and return their limit at `instants` (T,) [s].
 
+    The meshes are refined by `RATIO` each.
+
     Args:
         duration: of the motion [s]. meshes: elements per strip, coarse to fine [1].
         element: "corotational" or "reissner".
@@ -223,15 +225,6 @@ def swing_reference(
     """
     settings = (FeSettings(elements=count, element=element) for count in meshes)
     levels = [answer_release(problem, each, duration=duration, records=RECORDS) for each in settings]
-    return _limit_of_swings(levels, instants)
-
-
-def _limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
-    """Return the limit of motions at `instants` (T,) [s], on meshes that are refined by `RATIO` each.
-
-    Raises:
-        NoReference: one of them stopped early.
-    """
     source, swings = _extrapolated(levels), [sampled(level, instants) for level in levels]
     limits = {name: extrapolate([getattr(swing, name) for swing in swings], ratio=RATIO) for name in SWUNG}
     before = extrapolate([swing.rotation for swing in swings[:-1]], ratio=RATIO).value

@@ -7,13 +7,14 @@ planar beam knows none of it unless the scene names the effect; the remarks say 
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from studies.cases.design import Design
+from studies.cases.mechanism import Strip
 
 if TYPE_CHECKING:
     from studies.answers.response import Response
@@ -25,74 +26,76 @@ WORTH_SAYING = 0.01
 #: Largest strain of a linear material, smallest length over thickness of a beam [1].
 STRAIN, SLENDERNESS = 0.02, 10.0
 ROUND_OFF = 1e-9
-#: What the strip of a design calls alike.
-SAME_NAME = ("length", "youngs_modulus", "poisson_ratio", "density")
 #: Lengths [m], moduli [Pa] and densities [kg/m^3] that are not a slip of units.
 LENGTHS, MODULI, DENSITIES = (1e-5, 5.0), (1e6, 1.3e12), (10.0, 23e3)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Strip:
-    """A strip of rectangular section with its largest strain.
+class Bent(NamedTuple):
+    """A strip as a rectangle of its depth and area, with its largest strain and curvature.
 
     Attributes:
-        length, thickness, width: [m]; width follows from A = b t.
-        youngs_modulus: [Pa]; poisson_ratio: [1]; density: [kg/m^3].
+        part: of the design.
         strain: largest of an extreme fibre [1]; curvature: largest [1/m]; both zero before an answer.
-        yield_strength: [Pa], infinite if none is given.
     """
 
-    length: Any
-    thickness: Any
-    width: Any
-    youngs_modulus: Any
-    poisson_ratio: Any
-    density: Any
-    strain: Any = 0.0
-    curvature: Any = 0.0
-    yield_strength: Any = math.inf
+    part: Strip
+    strain: float = 0.0
+    curvature: float = 0.0
 
     @property
-    def width_ratio(self) -> Any:
+    def thickness(self) -> float:
+        """Thickness t [m]."""
+        return self.part.depth
+
+    @property
+    def width(self) -> float:
+        """Width b = A/t [m]."""
+        return self.part.area / self.part.depth
+
+    @property
+    def strength(self) -> float:
+        """Yield strength [Pa], infinite if none is given."""
+        return self.part.yield_strength or math.inf
+
+    @property
+    def width_ratio(self) -> float:
         """b/L [1]."""
-        return self.width / self.length
+        return self.width / self.part.length
 
     @property
-    def thickness_ratio(self) -> Any:
+    def thickness_ratio(self) -> float:
         """t/L [1]."""
-        return self.thickness / self.length
+        return self.thickness / self.part.length
 
     @property
-    def curvature_ratio(self) -> Any:
+    def curvature_ratio(self) -> float:
         """b^2/(R t) [1]."""
         return self.width**2 * self.curvature / self.thickness
 
     @property
-    def stress(self) -> Any:
+    def stress(self) -> float:
         """E times the largest strain [Pa]."""
-        return self.youngs_modulus * self.strain
+        return self.part.youngs_modulus * self.strain
 
     @property
-    def clamped(self) -> tuple[Any, Any]:
+    def clamped(self) -> tuple[float, float]:
         """Relative increase of the stiffness by lateral clamping, for a constant and a linear moment [1].
 
         It follows from the plate of the splines at b/L in two digits, so that many designs need few plates.
         """
-        of = np.vectorize(lambda ratio, nu: _plate(float(f"{ratio:.2g}"), round(float(nu), 2)))
-        low, high = of(self.width_ratio, self.poisson_ratio)
-        return low, high
+        return _plate(float(f"{self.width_ratio:.2g}"), round(self.part.poisson_ratio, 2))
 
     @property
-    def flattened(self) -> Any:
+    def flattened(self) -> float:
         """Relative increase of the moment by suppressed anticlastic bending at the largest curvature [1]."""
-        return anticlastic_factor(self.curvature_ratio, self.poisson_ratio) - 1.0
+        return float(anticlastic_factor(self.curvature_ratio, self.part.poisson_ratio)) - 1.0
 
-    @property
-    def turned_roots(self) -> Any:
-        """Relative decrease of the stiffness by two supports from the same block [1]."""
-        from spline_model.effects.registry import MONOLITHIC
 
-        return 1.0 - 1.0 / (1.0 + 2.0 * MONOLITHIC * self.thickness_ratio)
+def turned_roots(ratio: float) -> float:
+    """Return the relative decrease of the stiffness by two supports from the same block at t/L [1]."""
+    from spline_model.effects.registry import MONOLITHIC
+
+    return 1.0 - 1.0 / (1.0 + 2.0 * MONOLITHIC * ratio)
 
 
 def anticlastic_factor(ratio: Any, poisson_ratio: Any) -> Any:
@@ -118,39 +121,39 @@ class _Rule(NamedTuple):
     to the limit; and the effect that removes the limit."""
 
     says: str
-    excess: Callable[[Strip], Any]
+    excess: Callable[[Bent], float]
     effect: str = ""
 
 
-def _told_of(s: Strip) -> dict[str, float]:
+def _told_of(s: Bent) -> dict[str, float]:
     """Return the numbers of sentences, in the units they are told in."""
     return {
-        "length": s.length, "modulus": s.youngs_modulus, "density": s.density,
+        "length": s.part.length, "modulus": s.part.youngs_modulus, "density": s.part.density,
         "thickness_mm": 1e3 * s.thickness, "width_mm": 1e3 * s.width,
         "slenderness": 1.0 / s.thickness_ratio, "b_L": s.width_ratio, "t_L": s.thickness_ratio,
         "b2_Rt": s.curvature_ratio, "low": 100.0 * s.clamped[0], "high": 100.0 * s.clamped[1],
-        "flattened": 100.0 * s.flattened, "roots": 100.0 * s.turned_roots, "strain": 100.0 * s.strain,
-        "stress": s.stress / 1e6, "strength": s.yield_strength / 1e6,
+        "flattened": 100.0 * s.flattened, "roots": 100.0 * turned_roots(s.thickness_ratio),
+        "strain": 100.0 * s.strain, "stress": s.stress / 1e6, "strength": s.strength / 1e6,
     }  # fmt: skip
 
 
-def _beyond(value: Any, limits: tuple[float, float]) -> Any:
-    return np.maximum(limits[0] / value, value / limits[1])
+def _beyond(value: float, limits: tuple[float, float]) -> float:
+    return max(limits[0] / value, value / limits[1])
 
 
 #: Faults that the data alone show: wrong units, or exchanged dimensions.
 DATA = (
     _Rule(
         "length = {length:.3g} m: expected 10 um to 5 m (millimetres instead of metres?)",
-        lambda s: _beyond(s.length, LENGTHS),
+        lambda s: _beyond(s.part.length, LENGTHS),
     ),
     _Rule(
         "Young's modulus = {modulus:.3g} Pa: expected 1 MPa to 1300 GPa (GPa instead of Pa?)",
-        lambda s: _beyond(s.youngs_modulus, MODULI),
+        lambda s: _beyond(s.part.youngs_modulus, MODULI),
     ),
     _Rule(
         "density = {density:.3g} kg/m^3: expected 10 to 23000 (g/cm^3 instead of kg/m^3?)",
-        lambda s: _beyond(s.density, DENSITIES),
+        lambda s: _beyond(s.part.density, DENSITIES),
     ),
     _Rule(
         "thickness = {thickness_mm:.3g} mm, width = {width_mm:.3g} mm: expected the thickness, in the "
@@ -179,7 +182,7 @@ MODEL = (
     _Rule(
         "t/L = {t_L:.3g}: monolithic supports would reduce the stiffness by about {roots:.2g} % "
         "(enable: --effects=+root_compliance; ignore for clamped strips)",
-        lambda s: s.turned_roots / WORTH_SAYING,
+        lambda s: turned_roots(s.thickness_ratio) / WORTH_SAYING,
         ROOTS,
     ),
     _Rule(
@@ -188,7 +191,7 @@ MODEL = (
     ),
     _Rule(
         "stress = {stress:.4g} MPa: expected at most the yield strength, {strength:.4g} MPa",
-        lambda s: s.stress / s.yield_strength,
+        lambda s: s.stress / s.strength,
     ),
 )
 
@@ -226,7 +229,7 @@ def _assumed(design: Design) -> Iterator[str]:
         )
 
 
-def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) -> Iterator[str]:
+def told(rules: Iterable[_Rule], strips: list[Bent], effects: Iterable[str]) -> Iterator[str]:
     """Yield the warning of every rule that a strip breaks, for the strip that breaks it most."""
     named = set(effects)
     for rule in rules:
@@ -235,19 +238,16 @@ def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) ->
             yield rule.says.format(**_told_of(worst))
 
 
-def strips_of(design: Design, forces: Any = None) -> list[Strip]:
+def strips_of(design: Design, forces: Any = None) -> list[Bent]:
     """Return the strips of a design, with the largest strain and curvature of an answer."""
+    if forces is None:
+        return [Bent(part) for part in design.strips]
     found = []
     for i, part in enumerate(design.strips):
-        given = {name: getattr(part, name) for name in SAME_NAME}
-        strength, width = part.yield_strength or math.inf, part.area / part.depth
-        strip = Strip(thickness=part.depth, width=width, yield_strength=strength, **given)
-        if forces is not None:
-            axial, moment = forces.axial_force[:, i], forces.bending_moment[:, i]
-            b, t = part.growth(np.linspace(0.0, 1.0, moment.shape[-1]))
-            most = (np.abs(moment) / (b * t**3)).max(initial=0.0)
-            most /= part.youngs_modulus * part.second_moment_of_area
-            strain = part.extreme_fibre_strain(axial, moment).max(initial=0.0)
-            strip = replace(strip, strain=float(strain), curvature=float(most))
-        found.append(strip)
+        axial, moment = forces.axial_force[:, i], forces.bending_moment[:, i]
+        b, t = part.growth(np.linspace(0.0, 1.0, moment.shape[-1]))
+        rigidity = part.youngs_modulus * part.second_moment_of_area
+        curvature = (np.abs(moment) / (b * t**3)).max(initial=0.0) / rigidity
+        strain = part.extreme_fibre_strain(axial, moment).max(initial=0.0)
+        found.append(Bent(part, float(strain), float(curvature)))
     return found

@@ -27,19 +27,18 @@ class CaseError(BadInput):
 def parsed(path: str | Path) -> dict[str, Any]:
     """Return the document at `path`; CaseError if it cannot be read or is not TOML."""
     try:
-        text = Path(path).read_bytes().decode("utf-8-sig")
+        return tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
     except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}), expected a TOML case file") from None
+        said = f"cannot be read ({error.strerror})"
     except UnicodeDecodeError:
-        raise CaseError(f"{path}: got bytes that are not UTF-8 text, expected a TOML case file") from None
-    try:
-        return tomllib.loads(text)
+        said = "got bytes that are not UTF-8 text"
     except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{path}: got text that is not TOML ({error}), expected a TOML case file") from None
+        said = f"got text that is not TOML ({error})"
     except ValueError:
-        raise CaseError(f"{path}: got a whole number that fills pages, expected a TOML case file") from None
+        said = "got a whole number that fills pages"
     except RecursionError:
-        raise CaseError(f"{path}: got lists or tables nested too deep, expected a TOML case file") from None
+        said = "got lists or tables nested too deep"
+    raise CaseError(f"{path}: {said}, expected a TOML case file")
 
 
 def is_mechanism(document: Mapping[str, Any]) -> bool:

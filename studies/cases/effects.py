@@ -5,7 +5,7 @@ A table `[effects.NAME]` gives the parameters of an effect that the scene names,
 forgotten.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
@@ -75,22 +75,26 @@ class Effects:
     def parameters(self) -> dict[str, Any]:
         """Return the parameters of the named effects in SI units, with the defaults."""
         every = {
-            name: tuple(STANDARD.get(name, {}) | dict(own) for own in self.every(name)) for name in self.names
+            name: [STANDARD.get(name, {}) | dict(own) for own in self.every(name)] for name in self.names
         }
-        return {name: own if len(own) > 1 else own[0] for name, own in every.items() if any(own)}
+        return {name: _alone(own) for name, own in every.items() if any(own)}
 
     def grown(self, factor: float, more: Mapping[str, tuple[str, ...]] | None = None) -> "Effects":
         """Return the effects with all loads and drives, and `more` parameters by effect, times a factor
         [1]."""
-        growing, tables = GROWING | dict(more or {}), {}
-        for name in self.tables:
+        growing = GROWING | dict(more or {})
+
+        def grow(name: str, own: Table) -> Table:
             keys = growing.get(name, ())
-            every = [
-                {key: _times(value, factor) if key in keys else value for key, value in own.items()}
-                for own in self.every(name)
-            ]
-            tables[name] = tuple(every) if len(every) > 1 else every[0]
-        return replace(self, tables=tables)
+            return {key: _times(value, factor) if key in keys else value for key, value in own.items()}
+
+        return self.each(grow)
+
+    def each(self, change: Callable[[str, Table], Table]) -> "Effects":
+        """Return the effects with other parameters of every instance, by a function of its name and
+        parameters."""
+        every = {name: [change(name, own) for own in self.every(name)] for name in self.tables}
+        return replace(self, tables={name: _alone(own) for name, own in every.items()})
 
     def renamed(self, names: Sequence[str]) -> "Effects":
         """Return the effects with other names and the same tables."""
@@ -114,6 +118,11 @@ class Effects:
         scene = self.renamed(_names_after("--effects", words, self.names))
         _require_parameters("--effects", scene)
         return scene
+
+
+def _alone(every: Sequence[Table]) -> Any:
+    """Return the parameters of the instances of an effect: a table for each of several, or the only one."""
+    return tuple(every) if len(every) > 1 else every[0]
 
 
 def _names_after(where: str, words: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
@@ -152,13 +161,14 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     words = scene.get("effects", list(DEFAULT))
     if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
         raise CaseError(f"{path}: scene.effects: got {shown(words)}, expected a list of names")
-    tables, listed = _read_tables(path, content), _read_lists(path, content)
-    for name, own in listed.items():
-        tables[name] = (*tables.get(name, ()), *own)
-    names = _names_after(f"{path}: scene.effects", words, DEFAULT)
+    tables: dict[str, tuple[Table, ...]] = {}
+    listed = list(_read_lists(path, content))
+    for name, own in (*_read_tables(path, content), *listed):
+        tables[name] = (*tables.get(name, ()), own)
+    names = (*_names_after(f"{path}: scene.effects", words, DEFAULT), *(name for name, _ in listed))
     effects = Effects(
-        names=tuple(dict.fromkeys((*names, *listed))),
-        tables={name: own if len(own) > 1 else own[0] for name, own in tables.items()},
+        names=tuple(dict.fromkeys(names)),
+        tables={name: _alone(every) for name, every in tables.items()},
     )
     _require_parameters(path, effects)
     changed = effects if changes is None else effects.changed(changes)
@@ -171,9 +181,8 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     return changed
 
 
-def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table, ...]]:
-    """Return the parameters of every table [effects.NAME], and of those of an array [[effects.NAME]]."""
-    found: dict[str, tuple[Table, ...]] = {}
+def _read_tables(path: str, content: Mapping[str, Any]) -> Iterator[tuple[str, Table]]:
+    """Yield name and parameters of every table [effects.NAME], and of those of an array [[effects.NAME]]."""
     effects = document.table(path, content, "effects")
     for name, given in effects.items():
         require_known(f"{path}: effects", name)
@@ -182,13 +191,11 @@ def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table
             every = document.tables(path, effects, name, within="effects.")
         elif not isinstance(given, dict):
             raise CaseError(f"{path}: effects.{name}: got {shown(given)}, expected a table [effects.{name}]")
-        found[name] = tuple(_parameters(path, name, own, label) for label, own in every)
-    return found
+        yield from ((name, _parameters(path, name, own, label)) for label, own in every)
 
 
-def _read_lists(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table, ...]]:
-    """Return the parameters of the effects that [[loads]] and the other lists stand for."""
-    found: dict[str, tuple[Table, ...]] = {}
+def _read_lists(path: str, content: Mapping[str, Any]) -> Iterator[tuple[str, Table]]:
+    """Yield name and parameters of the effects that [[loads]] and the other lists stand for."""
     for section, effects in LISTS.items():
         for label, given in document.tables(path, content, section):
             meant = [name for name, key in effects.items() if not key or key in given]
@@ -200,8 +207,7 @@ def _read_lists(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table,
             document.refuse_unknown(path, label, given, sorted(known))
             for name in meant:
                 own = {key.name: given[key.name] for key in EFFECT_KEYS[name] if key.name in given}
-                found[name] = (*found.get(name, ()), _parameters(path, name, own, label))
-    return found
+                yield name, _parameters(path, name, own, label)
 
 
 def _times(value: Any, factor: float) -> Any:
@@ -225,17 +231,6 @@ def _require_parameters(where: str, effects: Effects) -> None:
         for key in EFFECT_KEYS.get(name, ()):
             if not key.optional and any(key.attribute not in own for own in effects.every(name)):
                 raise document.missing(where, key, key.section)
-
-
-def refuse_unknown_sides(where: str, effects: Effects, strips: Sequence[Any]) -> None:
-    """Raise CaseError that names the keys to give if an effect of the sides meets a strip without them."""
-    named = [name for name in effects.names if name in OF_SIDES]
-    for strip in strips if named else ():
-        if strip.width is None:
-            got = f"{where}: {strip.name}: got no sides for {' and '.join(named)}"
-            raise CaseError(
-                f"{got}, expected width_m and thickness_m in place of area_m2 and second_moment_m4"
-            )
 
 
 def _registered() -> Mapping[str, Any]:

@@ -3,6 +3,7 @@ the materials that they may name, each value with its source."""
 
 import tomllib
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,11 @@ INCREMENTS = rules.whole(1, 100_000)
 POISSON = rules.number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, closed="high")
 RATIO = rules.number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
 NAME, PLACE = text("a name"), text(f"{GROUND} or the name of a body")
-TIP = text(f"{PLACE.expected}, or {FREE}")
+TIP = replace(
+    text(f"{PLACE.expected}, or {FREE}"),
+    read=lambda place: None if place == FREE else place,
+    in_file=lambda place: place or FREE,
+)
 CLAMP, HINGE = "clamp", "hinge"
 JOINT = choice(CLAMP, HINGE)
 
@@ -88,8 +93,7 @@ _PATH = keys_of(
      "[0, 0.01]", "of a motion: from when until when it holds the rotation"),
 )
 
-#: Of a pivot.
-KEYS = (
+_PIVOT = (
     *keys_of(
         "strip",
         ("length_m", "length", positive("m"), "", "0.08", "length L of each of the two strips"),
@@ -121,6 +125,8 @@ KEYS = (
     ),
     *_PATH,
 )
+#: Tables of a pivot's file.
+PIVOT = {section: tuple(rows) for section, rows in groupby(_PIVOT, lambda key: key.section)}
 
 #: Of a mechanism.
 STRIP = keys_of(
@@ -166,6 +172,8 @@ OWN = tuple(
     replace(key, section="strips", name="material" if key is NAMED else key.name)
     for key in (*SECTION, *MATERIAL)
 )
+#: Tables of a mechanism's file.
+MECHANISM = {rows[0].section: rows for rows in (STRIP, BODY, SECTION, MATERIAL, DRIVE)}
 #: Arrays of tables, and the effects that a table [[loads]], ... stands for: each where the table has the key
 #: beside it, or in any case.
 LISTS: dict[str, dict[str, str]] = {
@@ -176,7 +184,8 @@ LISTS: dict[str, dict[str, str]] = {
 }
 #: Effects that may act several times.
 REPEATED = tuple(effect for effects in LISTS.values() for effect in effects)
-SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects", *LISTS, "points")
+#: Tables of any file beside those of its kind.
+ANY = ("scene", "effects", *LISTS, "points")
 
 #: Effect -> what it is.
 EFFECTS: dict[str, str] = {

@@ -19,17 +19,15 @@ Values = Mapping[str, Any]
 #: Older name of the key of the outermost fibre: twice its distance.
 OLD_DEPTH = "section_depth_m"
 
-#: Numbers of a strip that double precision bears: stiffness [N] or mass per length [kg/m], slenderness [1].
-SCALES, SLENDERNESS = (1e-60, 1e60), (0.1, 1e10)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Sectioned:
     """Section and material of strips.
 
     Args:
-        area, second_moment_of_area: A [m^2] and I [m^4] of the section, at the start of a strip.
-        width, thickness: of a rectangular section with that A and I [m]; None where only these are known.
+        area, second_moment_of_area: A [m^2] and I [m^4] of the section, at the start of a strip; those of the
+            sides, whatever is given, where these are known.
+        width, thickness: of a rectangular section [m]; None where only A and I are known.
         width_end, thickness_end: of a tapered one, at the end [m]; None of a constant one.
         outer_fibre: distance of the outermost fibre from the neutral axis [m]; None of a rectangle, and where
             it is not known.
@@ -37,8 +35,8 @@ class Sectioned:
         yield_strength: that stresses must stay below [Pa]; None where none is known.
     """
 
-    area: float
-    second_moment_of_area: float
+    area: float = math.nan
+    second_moment_of_area: float = math.nan
     width: float | None = None
     thickness: float | None = None
     width_end: float | None = None
@@ -48,6 +46,11 @@ class Sectioned:
     poisson_ratio: float
     density: float
     yield_strength: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.width is not None and self.thickness is not None:
+            for name, value in of_sides(self.width, self.thickness).items():
+                object.__setattr__(self, name, value)
 
     @property
     def depth(self) -> float:
@@ -73,7 +76,7 @@ class Sectioned:
         """Return width and thickness [m] of the rectangle with its A and I."""
         return rectangle_of(self.area, self.second_moment_of_area)
 
-    def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
+    def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> Any:
         """Return max |N/(EA) +- M c/(EI)|, the larger magnitude of the two extreme fibres (c: `fibre`).
 
         Exact for plane sections and small strain; neglects shear, the strips' initial curvature and the
@@ -84,13 +87,12 @@ class Sectioned:
             bending_moment: M, the same shape [N m].
         """
         modulus, inertia = self.youngs_modulus, self.second_moment_of_area
+        from numpy import linspace
+
         axial = axial_force / (modulus * self.area)
         bending = bending_moment * self.fibre / (modulus * inertia)
-        if self.width_end or self.thickness_end:
-            from numpy import linspace
-
-            b, t = self.growth(linspace(0.0, 1.0, axial_force.shape[-1]))
-            axial, bending = axial / (b * t), bending / (b * t * t)
+        b, t = self.growth(linspace(0.0, 1.0, axial_force.shape[-1]))
+        axial, bending = axial / (b * t), bending / (b * t * t)
         return abs(axial) + abs(bending)
 
 
@@ -124,45 +126,7 @@ def completed(
             missing = f" there nor in [{key.section}]" if shared else ""
             expected = f"{key.rule.expected}{named_one}"
             raise CaseError(f"{where}: {label}.{key.name}: got no such key{missing}, expected {expected}")
-    if pair is SIDES:
-        values |= of_sides(values["width"], values["thickness"])
     return values
-
-
-def _root(area: float, inertia: float) -> float:
-    """Return sqrt(A/I), without end where the second moment is too small for a number."""
-    return math.sqrt(area / inertia) if inertia > 0.0 else math.inf
-
-
-def out_of_scale(strip: Any) -> str:
-    """Return a phrase for the first number of a strip, at its ends, that is too large or small to solve, or
-    ""."""
-    modulus, length = strip.youngs_modulus, strip.length
-    for b, t in (strip.growth(0.0), strip.growth(1.0)):
-        area, inertia = strip.area * b * t, strip.second_moment_of_area * b * t * t * t
-        made = {
-            "stiffness EA [N]": (modulus * area, SCALES),
-            "slenderness L sqrt(A/I) [1]": (length * _root(area, inertia), SLENDERNESS),
-            "stiffness EI/L^2 [N]": (modulus * inertia / length / length, SCALES),
-            "mass per length [kg/m]": (strip.density * area, SCALES),
-        }
-        if said := _beyond(made):
-            return said
-    return ""
-
-
-def too_heavy(mass: float, inertia: float) -> str:
-    """Return a phrase if a body's mass [kg] or moment of inertia [kg m^2] is too large to solve; otherwise
-    ""."""
-    none = (0.0, SCALES[1])
-    return _beyond({"mass [kg]": (mass, none), "moment of inertia [kg m^2]": (inertia, none)})
-
-
-def _beyond(made: Mapping[str, tuple[float, tuple[float, float]]]) -> str:
-    for name, (value, (low, high)) in made.items():
-        if not low <= value <= high:
-            return f"{name}: got {value:.3g}, expected {low:g} to {high:g}"
-    return ""
 
 
 def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
@@ -207,7 +171,7 @@ def renamed(where: str, content: Values) -> Values:
     if not isinstance(depth, int | float) or isinstance(depth, bool) or FIBRE.name in content:
         return content
     _warn_of_name(where)
-    return {FIBRE.name: depth / 2.0} | without(content, [OLD_DEPTH])
+    return {FIBRE.name: depth / 2.0} | _without(content, [OLD_DEPTH])
 
 
 @cache
@@ -225,12 +189,12 @@ def inherited(shared: Values, own: Values) -> dict[str, Any]:
     left = dict(shared)
     for pair, other in (((*SIDES, *TAPER), MOMENTS), (MOMENTS, (*SIDES, *TAPER))):
         if any(key.attribute in own for key in pair):
-            left = without(left, [key.attribute for key in (*other, FIBRE)])
+            left = _without(left, [key.attribute for key in (*other, FIBRE)])
     if NAMED.attribute in own:
-        left = without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
+        left = _without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
     return left | dict(own)
 
 
-def without(values: Values, names: list[str]) -> dict[str, Any]:
+def _without(values: Values, names: list[str]) -> dict[str, Any]:
     """Return the values without those of these names."""
     return {name: value for name, value in values.items() if name not in names}

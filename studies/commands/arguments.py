@@ -7,27 +7,14 @@ from typing import TypeVar
 
 from studies.answers.settings import MODELS, Settings, settings_of_model
 from studies.cases import keys
-from studies.cases.design import Design, read_design
-from studies.cases.document import nearest, present
-from studies.cases.problem import FOLDER
+from studies.cases.design import Design, case_file, read_design
+from studies.cases.document import present
 from studies.commands.parser import STREAM, Argument, as_in_file, names_of, positive, whole_number
 from studies.errors import BadInput
 from studies.record.files import PICTURES, require_writable_file
 from studies.record.source import HOME
 
 Some = TypeVar("Some", bound=Design)
-
-
-def _case_file(text: str) -> str:
-    """Return the file of a case: of one by its name that comes with the suite, or the path as it is given."""
-    path, own = Path(text), FOLDER / f"{text}.toml"
-    if path.is_file() or text.endswith(".toml") or (path.exists() and not own.is_file()):
-        return text
-    if own.is_file():
-        return str(own)
-    near = nearest(text, sorted(path.stem for path in FOLDER.glob("*.toml")))
-    expected = f"{text}.toml" if Path(f"{text}.toml").is_file() else f"{near}, or a file that ends in .toml"
-    raise BadInput(f"got {text}, expected {expected}")
 
 
 def _writable_file(text: str) -> Path:
@@ -60,7 +47,7 @@ def _picture_file(text: str) -> Path:
     return _writable_file(text)
 
 
-CASE = Argument("case CASE", "the design: a file, or one of the suite, as cross_axis_pivot", _case_file)
+CASE = Argument("case CASE", "the design: a file, or one of the suite, as cross_axis_pivot", case_file)
 EFFECTS = Argument(
     "--effects LIST",
     "+NAME adds, -NAME removes: --effects=+gravity; names alone are all (default: the case's)",

@@ -25,17 +25,8 @@ NAMES = "gravity"
 #: Where the comments begin.
 COLUMN = 36
 #: Tables of a pivot's file, and of a mechanism's, in the order of a file, with their keys.
-PIVOT: dict[str, tuple[Key, ...]] = {
-    f"[{section}]": tuple(key for key in keys.KEYS if key.section == section)
-    for section in dict.fromkeys(key.section for key in keys.KEYS)
-}
-MECHANISM: dict[str, tuple[Key, ...]] = {
-    "[[strips]]": keys.STRIP,
-    "[[bodies]]": keys.BODY,
-    "[section]": keys.SECTION,
-    "[material]": keys.MATERIAL,
-    "[drive]": keys.DRIVE,
-}
+PIVOT = {f"[{section}]": rows for section, rows in keys.PIVOT.items()}
+MECHANISM = {f"[[{s}]]" if s in ("strips", "bodies") else f"[{s}]": r for s, r in keys.MECHANISM.items()}
 
 
 @command(

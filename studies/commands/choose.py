@@ -183,12 +183,12 @@ def audit(arguments: argparse.Namespace) -> int:
     the travel, of the torque over the largest, of the swing's and the first mode's frequency, and of the
     part of the energy that is lost. Times are of static path and motion together, the full scene's over
     the line's: above 1 the line is faster. DOF are those with inertia; the explicit step is the longest
-    stable one of the leapfrog. Then come the effects that planar beams neglect: lateral clamping,
-    anticlastic stiffening, monolithic supports, all three, and shear, which the elements have (--model
-    fe-shear). Printed are the changes of path, of stiffness at the begin of the rotation, of torque and
-    largest stress at its end, and of the first mode. The cheapest scene within the tolerance is that with
-    the fewest effects, which is not always the fastest. Exit code 0: done; 2: bad input; 3: the full
-    scene has no answer.
+    stable one of the leapfrog, or of central differences where strips cannot stretch. Then come the effects
+    that planar beams neglect: lateral clamping, anticlastic stiffening, monolithic supports, all three, and
+    shear, which the elements have (--model fe-shear). Printed are the changes of path, of stiffness at the
+    begin of the rotation, of torque and largest stress at its end, and of the first mode. The cheapest scene
+    within the tolerance is that with the fewest effects, which is not always the fastest. Exit code 0: done;
+    2: bad input; 3: the full scene has no answer.
     """
     design = take.chosen_design(arguments)
     settings = SplineSettings(control_points=arguments.control_points)

@@ -20,7 +20,8 @@ from multiprocessing import get_context
 from studies.__main__ import command_of
 from studies.__main__ import main as called
 from studies.answers.settings import SplineSettings
-from studies.cases.problem import FOLDER, named_case
+from studies.cases.design import SHIPPED
+from studies.cases.problem import named_case
 from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import command
 from studies.record.files import forget, forget_stale, write_whole
@@ -29,23 +30,25 @@ from studies.registry import COMMANDS, STUDIES
 CASE = "cross_axis_pivot"
 #: What small calls of `solve` and `release` have in common, and their discretisations.
 PATH = f"solve {CASE} --increments 1 --rotation-deg 5"
+MODES = f"modes {CASE}"
 MOTION = f"release {CASE} --no-check --rotation-deg 5 --duration 1e-5"
 SPLINE, ELEMENTS = "--control-points 4", "--elements 4 --model"
 #: Commands that between them enter every kernel: first what others stand on, then those of each process, the
 #: longest first. What no command enters stands by the name of the function that does.
 CALLS: tuple[tuple[tuple[str, ...], ...], ...] = (
-    ((f"{PATH} --accuracy 1", "many"), (f"{PATH} {ELEMENTS} fe",)),
     (
-        (f"modes {CASE} {ELEMENTS} fe", f"{MOTION} {ELEMENTS} fe"),
-        (f"{MOTION} {SPLINE} --step 1e-8",),
-        ("impulses",),
-        (f"{MOTION} {SPLINE} --step 1e-8 --integrator leapfrog",),
-        (
-            f"{MOTION} {SPLINE} --step 1e-8 --effects=bending,stretching,body_inertia",
-            f"modes {CASE} {SPLINE}",
+        (f"{PATH} --accuracy 1", f"{PATH} {SPLINE} --stretch consistent"),
+        tuple(
+            f"{words} {ELEMENTS} {model}" for model in ("fe", "fe-shear") for words in (PATH, MODES, MOTION)
         ),
-        (f"{PATH} {ELEMENTS} fe-shear", f"modes {CASE} {ELEMENTS} fe-shear", f"{MOTION} {ELEMENTS} fe-shear"),
-        (f"{PATH} {SPLINE} --stretch consistent", f"modes {CASE} {SPLINE} --stretch consistent"),
+    ),
+    (
+        (f"{MOTION} {SPLINE} --step 1e-8",),
+        (f"{MOTION} {SPLINE} --step 1e-8 --integrator leapfrog",),
+        ("impulses",),
+        (f"{MOTION} {SPLINE} --step 1e-8 --effects=bending,stretching,body_inertia",),
+        ("many",),
+        (f"{MODES} {SPLINE}", f"{MODES} {SPLINE} --stretch consistent"),
     ),
 )
 
@@ -76,10 +79,11 @@ def _enter(calls: tuple[str, ...]) -> None:
 
 def _many() -> None:
     """Solve several designs in one call."""
-    from spline_model.batch import solve_many
+    import spline_model
 
     case = named_case(CASE)
-    solve_many(case.pivot_parameters(), rotation=0.1, increments=1, section_depth=case.depth)
+    pivot = case.modelled(spline_model)
+    spline_model.solve_many(pivot, {}, rotation=0.1, increments=1, section_depth=case.depth)
 
 
 def _impulses() -> None:
@@ -147,5 +151,5 @@ def _line(pattern: str, words: Iterable[str]) -> str:
 def _names(argument: str) -> list[str]:
     """Return the names of the suite that an argument accepts: cases or studies."""
     if argument in ("case", "cases"):
-        return sorted(path.stem for path in FOLDER.glob("*.toml"))
+        return SHIPPED
     return sorted({*STUDIES, *(name.partition("/")[0] for name in STUDIES)}) if argument == "names" else []

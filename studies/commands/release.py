@@ -133,12 +133,10 @@ def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
 
 def _without_followers(design: Design) -> Design:
     """Return the design whose loads keep their directions, which alone has modes."""
-    effects = design.effects
-    fixed = {
-        name: tuple({**own, "follower": False} if "follower" in own else own for own in effects.every(name))
-        for name in effects.tables
-    }
-    return replace(design, effects=replace(effects, tables=fixed))
+    effects = design.effects.each(
+        lambda _, own: {**own, **({"follower": False} if "follower" in own else {})}
+    )
+    return replace(design, effects=effects)
 
 
 def _last_time(design: Design) -> float:

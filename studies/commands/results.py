@@ -160,13 +160,12 @@ def _whole(names: list[str], count: int) -> Iterator[tuple[str, Study, Tables, f
     """Yield studies with their tables and seconds as their points are all answered, while a bar shows how far
     they are; by so many processes of one thread each, or by this one alone."""
     names_at = {STUDIES[name]: name for name in names}
-    studies = {place: study_of(name) for place, name in names_at.items()}
     with ExitStack() as opened, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
         pool = ProcessPoolExecutor(count, mp_context=get_context("spawn")) if count > 1 else None
         if pool:
             opened.callback(pool.shutdown, cancel_futures=True)
-        for place, tables, seconds in whole(studies, bar, pool):
-            yield names_at[place], studies[place], tables, seconds, bar
+        for place, tables, seconds in whole(names_at, bar, pool):
+            yield names_at[place], study_at(place), tables, seconds, bar
 
 
 def _stored(store: Store, name: str) -> Tables:
@@ -191,18 +190,18 @@ def _differing(stored: Tables, found: Tables, study: Study) -> dict[str, str]:
 
 
 def whole(
-    studies: Mapping[str, Study], progress: Progress, pool: Executor | None = None
+    places: Iterable[str], progress: Progress, pool: Executor | None = None
 ) -> Iterator[tuple[str, dict[str, pd.DataFrame], float]]:
     """Ask all points, and yield each study as soon as it is whole: its place, its tables, and what all its
     answers took, one after the other [s].
 
     Args:
-        studies: by their places, as of `study_at`, where other processes find them.
+        places: of studies, as of `study_at`, where other processes find them.
         progress: is told how many points of how many of all studies are done.
         pool: has points of all studies beside each other, but for those that must be alone, which come when
             it has done the others. Without it one study comes after the other.
     """
-    points = {key: one for place, study in studies.items() for key, one in _points(place, study).items()}
+    points = {key: one for place in places for key, one in _points(place).items()}
     found: dict[Key, Timed] = {}
     progress(0, len(points))
     for key, timed in _answers(points, pool):
@@ -211,7 +210,7 @@ def whole(
         mine = [each for each in points if each[0] == key[0]]
         if all(each in found for each in mine):
             answers, seconds = zip(*(found[each] for each in mine), strict=True)
-            yield key[0], studies[key[0]].tables(answers), sum(seconds)
+            yield key[0], study_at(key[0]).tables(answers), sum(seconds)
 
 
 def _answers(points: Points, pool: Executor | None) -> Iterator[tuple[Key, Timed]]:
@@ -223,11 +222,12 @@ def _answers(points: Points, pool: Executor | None) -> Iterator[tuple[Key, Timed
     yield from ((key, _timed(*point)) for key, point in points.items() if key not in beside)
 
 
-def _points(place: str, study: Study) -> Points:
+@cache
+def _points(place: str) -> Points:
     """Return part and point by their key."""
     return {
         (place, i, k): (part, point)
-        for i, part in enumerate(study.parts)
+        for i, part in enumerate(study_at(place).parts)
         for k, point in enumerate(part.at())
     }
 
@@ -240,12 +240,7 @@ def _timed(part: Part, point: Any) -> Timed:
 
 def _elsewhere(key: Key) -> Timed:
     """Answer one point in another process, which has the study from its place."""
-    return _timed(*_points_at(key[0])[key])
-
-
-@cache
-def _points_at(place: str) -> Points:
-    return _points(place, study_at(place))
+    return _timed(*_points(key[0])[key])
 
 
 if TYPE_CHECKING:  # the report is in a clone only

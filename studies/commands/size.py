@@ -40,17 +40,16 @@ from studies.answers.reference import NoReference
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.answers.validity import validity
-from studies.cases.design import as_toml, design_of
+from studies.cases.design import Design, as_toml, design_of
 from studies.cases.document import parsed
 from studies.cases.effects import OF_SIDES
 from studies.cases.keys import LOADS_FIRST
-from studies.cases.problem import Problem
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import by_row, numbers, plain, table
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.design import evaluate
-from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, VARIATION, Accurate
+from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, VARIATION, Answers
 from studies.design.optimise import SAME, STARTS, Outcome, best, numbered, search, settled
 from studies.design.question import Question
 from studies.errors import BadInput
@@ -124,7 +123,7 @@ def _question(arguments: argparse.Namespace) -> Question:
         drive = content.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
         content = content | {"drive": drive}
     start = design_of(where, content)
-    if isinstance(start, Problem):
+    if start.crossing_point is not None:
         _require_sizable(where, start)
     elif not arguments.free:
         raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
@@ -141,13 +140,13 @@ def _question(arguments: argparse.Namespace) -> Question:
     return task
 
 
-def _require_sizable(where: str, start: Problem) -> None:
+def _require_sizable(where: str, start: Design) -> None:
     """Raise BadInput for a pivot of which no range can be sized."""
-    effects, order = set(start.effects.names), start.order
+    effects, order, fibre = set(start.effects.names), start.order, start.strips[0].outer_fibre
     late = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
     for wrong, got, expected in (
         (not start.rotation, "drive.rotation_deg: got 0", "a range to size for"),
-        (start.outer_fibre, f"strip.outer_fibre_m: got {start.outer_fibre}", "none: sides of a rectangle"),
+        (fibre, f"strip.outer_fibre_m: got {fibre}", "none: sides of a rectangle"),
         ("driven_displacement" in effects, "scene.effects: got driven_displacement", "a body free to shift"),
         (effects - evaluate.PLAIN and order != LOADS_FIRST, f'drive.order: got "{order}"', late),
     ):
@@ -155,14 +154,14 @@ def _require_sizable(where: str, start: Problem) -> None:
             raise BadInput(f"{where}: {got}, expected {expected}")
 
 
-def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Accurate]:
+def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Answers]:
     """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
     own = task.accurate()
     if own.quantities[task.objective] <= NOTHING:
         expected = "what is not zero already: its stiffness does not vary"
         raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
     strengths = [strip.yield_strength or math.nan for strip in task.start.strips]
-    allowable = own.answers.largest(STRESS) if math.isnan(sum(strengths)) else min(strengths)
+    allowable = own.largest(STRESS) if math.isnan(sum(strengths)) else min(strengths)
     if arguments.max_stress_MPa is not None:
         allowable = 1e6 * arguments.max_stress_MPa
     wanted = arguments.stiffness if arguments.travel_mm is None else 1e-3 * arguments.travel_mm
@@ -179,7 +178,6 @@ class _Optimum:
     """
 
     outcome: Outcome
-    answers: Accurate
     path: Response
     elements: Mapping[str, float]
     no_elements: str = ""
@@ -187,13 +185,13 @@ class _Optimum:
     @classmethod
     def of(cls, asked: Question, found: Outcome) -> Self:
         """Return an optimum with all that is said of it."""
-        found, answers = settled(asked, found)
+        found = settled(asked, found)
         path, reason = answer_static(found.design, SplineSettings()), ""
         try:
             elements = evaluate.by_elements(found.design)
         except (NoReference, BadInput) as error:
             elements, reason = dict.fromkeys(KEYS, math.nan), str(error)
-        return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
+        return cls(outcome=found, path=path, elements=elements, no_elements=reason)
 
 
 def _named(asked: Question, measured: Mapping[str, float]) -> dict[str, float]:
@@ -207,7 +205,7 @@ def _numbers(asked: Question, at: Array) -> dict[str, float]:
 
 
 def _document(
-    asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
+    asked: Question, own: Answers, outcomes: list[Outcome], found: _Optimum | None
 ) -> dict[str, Any]:
     """Return the answer as the JSON object of the command; own: the case's answers."""
 
@@ -225,12 +223,12 @@ def _document(
     ]
     optimum = found and {
         "numbers": _numbers(asked, found.outcome.at),
-        "spline": _named(asked, found.answers.quantities),
-        "estimated_error": _named(asked, found.answers.errors),
-        "control_points": found.answers.control_points,
+        "spline": _named(asked, found.outcome.answers.quantities),
+        "estimated_error": _named(asked, found.outcome.answers.errors),
+        "control_points": found.outcome.answers.control_points,
         "finite_elements": _named(asked, found.elements),
         "validity": asdict(validity(found.path)),
-        "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
+        "active": [{"constraint": name, "price": price} for name, price in found.outcome.active.items()],
     }
     return {
         "objective": asked.objective,
@@ -249,7 +247,7 @@ def _said(asked: Question) -> tuple[str, str]:
     least = f"least {asked.objective.replace('-', ' ')}"
     if rotation is not None:
         degrees = math.degrees(rotation)
-        both = isinstance(asked.start, Problem)
+        both = asked.start.crossing_point is not None
         least += f" over +-{abs(degrees):.4g} deg" if both else f" over {degrees:.4g} deg"
     if loads := [name for name in names if name not in evaluate.PLAIN]:
         least += f" under {', '.join(loads)}"
@@ -262,7 +260,7 @@ def _said(asked: Question) -> tuple[str, str]:
 
 
 def _readable(
-    asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
+    asked: Question, own: Answers, outcomes: list[Outcome], found: _Optimum | None
 ) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
     yield from _said(asked)
@@ -271,7 +269,7 @@ def _readable(
     if found is not None:
         yield from _comparison(asked, own.quantities, found)
         designs.append(("sized", _numbers(asked, found.outcome.at)))
-        active = ", ".join(f"{each.name} ({each.price:+.2g})" for each in found.outcome.active)
+        active = ", ".join(f"{name} ({price:+.2g})" for name, price in found.outcome.active.items())
         yield f"held back by, with prices: {active or 'nothing'}"
         if held := [each.name for each in asked.variables if each.span == 0.0]:
             yield f"held as asked: {', '.join(held)}"
@@ -299,14 +297,14 @@ def _ended(number: int, outcome: Outcome) -> str:
 
 def _comparison(asked: Question, case: Mapping[str, float], found: _Optimum) -> Iterator[str]:
     """Yield what case and optimum answer, how sure that is, and what `solve` says of the optimum."""
-    spline, errors = found.answers.quantities, found.answers.errors
+    spline, errors = found.outcome.answers.quantities, found.outcome.answers.errors
     columns = [("case", case), ("sized", spline), ("in FE", found.elements)]
     scales = {key: Scale.of_key(key) for key in _named(asked, case)}
     yield from table(by_row(scales, [(name, _named(asked, own)) for name, own in columns], DIGITS))
     if found.no_elements:
         yield f"the finite elements have no answer: {found.no_elements}"
     yield _gain(case[asked.objective] / spline[asked.objective])
-    points = f"{found.answers.control_points} control points"
+    points = f"{found.outcome.answers.control_points} control points"
     told = (f"{name} {e:.1e}" if math.isfinite(e) else f"{name} not estimated" for name, e in errors.items())
     yield f"estimated error of the splines, sized, {points}: {', '.join(told)}"
     if missed := [name for name, error in errors.items() if error > DEFAULT]:

@@ -152,30 +152,22 @@ def _document_of_load(found: CriticalLoad) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         **tell.headed(found),
-        "force_direction_rad": found.direction,
-        "held": found.held,
-        "verdict": found.verdict,
+        **tell.keyed(found, "force_direction_rad", "held", "verdict"),
         "critical_load_N": found.force,
-        "kind": found.kind,
-        "relative_error": found.uncertainty,
-        "weight_share": found.preload,
-        "borne_N": found.reached,
-        "rotation_rad": found.turned,
-        "rotation_error_rad": found.turned_error,
-        "rotation_5_deg_N": found.soft,
-        "yield_N": found.yields,
-        "soft_relative_error": found.softer,
+        **tell.keyed(found, "kind", "relative_error", "weight_share", "borne_N"),
+        **tell.keyed(found, "rotation_rad", "rotation_error_rad", "rotation_5_deg_N", "yield_N"),
+        "soft_relative_error": found.soft_relative_error,
     }
 
 
 def _readable_of_load(found: CriticalLoad) -> Iterator[str]:
     """Yield the model and its verdict, with the rotation there and the estimated error."""
     yield tell.described(found)
-    way = f"force at {math.degrees(found.direction):g} deg, rotation {'held' if found.held else 'free'}"
-    angle, turned = math.degrees(found.turned), ""
+    way = f"force at {math.degrees(found.force_direction):g} deg, rotation {'held' if found.held else 'free'}"
+    angle, turned = math.degrees(found.rotation_rad), ""
     if abs(angle) > NO_TURN:
-        turned = f", turned {angle:.4g} deg within {math.degrees(found.turned_error):.1g} deg"
-    error = f", estimated error {found.uncertainty:.1e}" if math.isfinite(found.uncertainty) else ""
+        turned = f", turned {angle:.4g} deg within {math.degrees(found.rotation_error):.1g} deg"
+    error = f", estimated error {found.relative_error:.1e}" if math.isfinite(found.relative_error) else ""
     yield f"{way}: {found.verdict if found.converged else 'not resolved'}{turned}{error}"
     if found.converged and found.force is None:
         yield _softening(found)
@@ -186,10 +178,14 @@ def _softening(found: CriticalLoad) -> str:
     soft = "the rotation stays below 5 deg"
     if found.held:
         soft = "the rotation is held"
-    elif found.soft is not None:
-        soft = f"the rotation passes 5 deg at {found.soft:.6g} N"
+    elif found.rotation_5_deg is not None:
+        soft = f"the rotation passes 5 deg at {found.rotation_5_deg:.6g} N"
     yields = "no strip yields, or the yield strength is not given"
-    if found.yields is not None:
-        yields = f"first yield at {found.yields:.6g} N"
-    error = f", estimated error {found.softer:.1e}" if math.isfinite(found.softer) else ""
+    if found.yield_N is not None:
+        yields = f"first yield at {found.yield_N:.6g} N"
+    error = (
+        f", estimated error {found.soft_relative_error:.1e}"
+        if math.isfinite(found.soft_relative_error)
+        else ""
+    )
     return f"{soft}; {yields}{error}"

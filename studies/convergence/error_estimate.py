@@ -20,7 +20,6 @@ from studies.answers.metrics import differences
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.cases.section import of_sides
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.record.store import Digits
 
@@ -54,7 +53,7 @@ def _drawn() -> Iterator[tuple[Row, Problem]]:
     for number, (logarithm, *others) in enumerate(points):
         depth = given.length / math.exp(logarithm)
         values: dict[str, Any] = dict(zip([*BOUNDS][1:], map(float, others), strict=True))
-        problem = replace(given, width=width, thickness=depth, **of_sides(width, depth), **values)
+        problem = replace(given, width=width, thickness=depth, **values)
         identity = {"design": number, "slenderness": problem.length / problem.depth}
         identity |= {"crossing_ratio": problem.crossing_ratio, "inclination_rad": problem.inclination}
         yield identity | {"rotation_rad": problem.rotation}, problem

@@ -25,7 +25,6 @@ import pandas as pd
 from studies.answers import reference
 from studies.answers.reference import Reference
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 from studies.cost.exudyn import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements, spline
 from studies.cost.openseespy import openseespy_frame
@@ -291,7 +290,7 @@ def advise(design: Design, error: float, progress: Progress = silent) -> pd.Data
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    pivot, own = isinstance(design, Problem), (spline, elements)
+    pivot, own = design.crossing_point is not None, (spline, elements)
     asked = [each for each in paths() if each.model.installed() and (pivot or each.model in own)]
     limits = {theory: path_limit(design, theory) for theory in {each.theory for each in asked}}
     rows = compared(asked, design, limits, passes=ADVISED, progress=progress)

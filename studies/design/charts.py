@@ -8,6 +8,7 @@ fibre, |N|/(EA) + |M| t/(2 EI). Turned to either side the pivot is its own mirro
 enough. The theory is limited by the effects on the stiffness that a plain beam neglects.
 """
 
+import math
 from itertools import product
 from typing import Any
 
@@ -16,12 +17,12 @@ import pandas as pd
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from spline_model import solve_many
+from spline_model import cross_axis_pivot, solve_many
 from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.answer import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.validity import Strip, anticlastic_factor, strips_of
+from studies.answers.validity import anticlastic_factor, strips_of, turned_roots
 from studies.cases.problem import named_case
 from studies.cases.section import of_sides
 from studies.engine import Answer, Claim, Part, Study, Tables
@@ -71,13 +72,15 @@ def paths(ratios: Array, inclinations: Array, slenderness: float) -> dict[str, A
         ValueError: a pivot that is not reached.
     """
     angles, section = np.radians(inclinations), of_sides(WIDTH, 1.0 / slenderness)
-    unit = dict.fromkeys(("length", "youngs_modulus", "density", "body_mass", "body_moment_of_inertia"), 1.0)
+    ones = ("length", "youngs_modulus", "density", "body_mass", "body_moment_of_inertia")
+    unit: dict[str, Any] = {**dict.fromkeys(ones, 1.0), **section, "poisson_ratio": POISSON}
+    pivot = cross_axis_pivot(**unit, crossing_ratio=0.5, inclination=math.pi / 4, control_points=POINTS)
     found = solve_many(
-        {**unit, **section, "poisson_ratio": POISSON, "crossing_ratio": ratios, "inclination": angles},
+        pivot,
+        {"crossing_ratio": ratios, "inclination": angles},
         rotation=np.radians(max(ROTATIONS)),
         increments=round(max(ROTATIONS) / INCREMENT),
         section_depth=1.0 / slenderness,
-        control_points=POINTS,
     )
     if not found.converged.all():
         raise ValueError(f"charts: {np.sum(~found.converged)} designs of L/t {slenderness:g} are not reached")
@@ -136,26 +139,19 @@ def _judged(name: str) -> Answer:
             "thickness_ratio": strip.thickness_ratio,
             "width_ratio": strip.width_ratio,
             "curvature_ratio": strip.curvature_ratio,
-            "clamped_least": float(strip.clamped[0]),
-            "clamped_most": float(strip.clamped[1]),
-            "flattened": float(strip.flattened),
-            "roots": -strip.turned_roots,
+            "clamped_least": strip.clamped[0],
+            "clamped_most": strip.clamped[1],
+            "flattened": strip.flattened,
+            "roots": -turned_roots(strip.thickness_ratio),
             "shear": shear / plain - 1.0,
         }
     }
 
 
-def _roots(ratio: float) -> float:
-    """Return the stiffness that roots take of a strip of that thickness over length."""
-    section = {"thickness": ratio, "width": WIDTH}
-    strip = Strip(length=1.0, **section, youngs_modulus=1.0, poisson_ratio=POISSON, density=1.0)
-    return float(strip.turned_roots)
-
-
 #: Ratio -> the part of the stiffness that a plain beam neglects, and the range that is searched.
 LEFT_OUT = {
     "width_ratio": (lambda ratio: plate_factors(ratio, POISSON).linear - 1.0, (0.02, 1.5)),
-    "thickness_ratio": (_roots, (1e-4, 0.5)),
+    "thickness_ratio": (turned_roots, (1e-4, 0.5)),
     "curvature_ratio": (lambda ratio: float(anticlastic_factor(ratio, POISSON)) - 1.0, (0.01, 40.0)),
 }
 

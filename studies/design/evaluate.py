@@ -1,16 +1,13 @@
 """A design's answers over its range with exact gradients, and those of the finite elements beside them."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
-from functools import cache
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from spline_model.accuracy import DEFAULT, MOST
-from spline_model.confirmed import MORE, NOTHING
+from spline_model.confirmed import NOTHING
 from spline_model.sensitivity import sensitivities
 from studies.answers.answer import centre_shift
 from studies.answers.models import put
@@ -27,8 +24,6 @@ STATIONS = np.linspace(0.0, 1.0, 21)
 #: The fewest control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation
 #: by 8 %.
 CONTROL_POINTS = 10
-#: Control points that are added where the accuracy is not reached.
-FURTHER = 2
 #: Effects under which both sides of a range are mirror images, as both strips are alike.
 PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
 
@@ -37,7 +32,7 @@ def _sides_of(design: Design) -> list[Design]:
     """Return the designs of the rotations that a range takes: both of a pivot under loads, else one."""
     if design.crossing_point is None or set(design.effects.names) <= PLAIN:
         return [design]
-    return [design, replace(design, rotation=-design.rotation)]
+    return [design, replace(design, rotation=-(design.rotation or 0.0))]
 
 
 def _held_states(design: Design) -> list[int]:
@@ -69,15 +64,25 @@ class Answers:
             centre shift [m^2] and the change of the stiffness over that of the first state, signed [1]; the
             signed fibre stresses at the states of `_held_states` [Pa].
         quantities: the largest of each over all states [m, 1, N m / rad, m, Pa].
+        control_points: of each strip [1].
+        errors: of the quantities that are told, estimated and relative [1]; NaN where nothing estimates them.
     """
 
     followed: Mapping[str, Followed]
     quantities: Mapping[str, float]
+    control_points: int
+    errors: Mapping[str, float] = field(default_factory=dict)
 
     def largest(self, quantity: str) -> float:
         """Return the largest size of a quantity that is followed [m, 1, N m / rad or Pa]."""
         largest = float(np.abs(self.followed[quantity].value).max())
         return math.sqrt(largest) if quantity == CENTRE_SHIFT else largest
+
+    def apart(self, fine: "Answers", quantity: str) -> float:
+        """Return the relative difference of a quantity to that of finer answers [1]."""
+        mine, right = self.quantities[quantity], fine.quantities[quantity]
+        scale = max(abs(right), NOTHING) if quantity == VARIATION else abs(right)
+        return abs(mine - right) / scale if scale else 0.0
 
 
 def _quantities(shift: Array, stiffness: Array, stress: Array) -> dict[str, float]:
@@ -124,7 +129,8 @@ def answers(design: Design, control_points: int, parameters: Sequence[str], chai
         travel = np.linalg.norm(shift[-1:], axis=1)
         followed[TRAVEL] = Followed(travel, shift[-1:] @ by_shift[-1] / travel)
     largest = np.abs(stress).max(axis=(1, 2, 3))
-    return Answers(followed=followed, quantities=_quantities(np.hypot(*shift.T), stiffness, largest))
+    quantities = _quantities(np.hypot(*shift.T), stiffness, largest)
+    return Answers(followed=followed, quantities=quantities, control_points=control_points)
 
 
 def _to_one_side(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> list[Array]:
@@ -154,50 +160,6 @@ def _to_one_side(design: Design, control_points: int, parameters: Sequence[str],
 def _joined(sides: Sequence[Array]) -> Array:
     """Return the values of a path to one side and, behind its first state, of that to the other."""
     return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
-
-
-@dataclass(frozen=True, kw_only=True)
-class Accurate:
-    """A design's answers with as many control points as the accuracy of its quantities takes.
-
-    errors: of the quantities that are told, estimated and relative [1], NaN where nothing estimates them.
-    """
-
-    answers: Answers
-    errors: Mapping[str, float]
-    control_points: int
-
-    @property
-    def quantities(self) -> dict[str, float]:
-        """The quantities that are told, by name."""
-        return {name: self.answers.quantities[name] for name in self.errors}
-
-
-def accurate(solve: Callable[[int], Answers], names: Sequence[str]) -> Accurate:
-    """Return the answers of a design that `solve` gives with some control points, chosen so that the
-    quantities of these names have an error of `DEFAULT`, estimated by `MORE` control points.
-
-    Raises:
-        PathEnds: the fewest control points do not reach the end of the range.
-    """
-    solved, least = cache(solve), math.inf
-    found, errors, chosen = solved(CONTROL_POINTS), dict.fromkeys(names, math.nan), CONTROL_POINTS
-    for points in range(CONTROL_POINTS, MOST + 1, FURTHER):
-        if least <= DEFAULT:
-            break
-        with suppress(PathEnds):
-            mine, fine = solved(points), solved(points + MORE)
-            apart = {name: _apart(name, mine, fine) for name in names}
-            if max(apart.values()) < least:
-                least, found, errors, chosen = max(apart.values()), mine, apart, points
-    return Accurate(answers=found, errors=errors, control_points=chosen)
-
-
-def _apart(name: str, coarse: Answers, fine: Answers) -> float:
-    """Return the relative difference of a quantity of two answers [1]."""
-    mine, right = coarse.quantities[name], fine.quantities[name]
-    scale = max(abs(right), NOTHING) if name == VARIATION else abs(right)
-    return abs(mine - right) / scale if scale else 0.0
 
 
 def by_elements(design: Design) -> dict[str, float]:

@@ -14,7 +14,7 @@ round-off.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -78,16 +78,6 @@ class _Rows(NamedTuple):
     margin: Array
     by: Array
     fall: float
-
-
-class _Active(NamedTuple):
-    """A constraint that holds an optimum back.
-
-    price: relative change of the objective over a relative change of the limit, to first order [1].
-    """
-
-    name: str
-    price: float
 
 
 @dataclass(kw_only=True)
@@ -187,8 +177,11 @@ class Programme:
         free, signs = np.isfinite(margin), np.append(np.full(self._count - 1, -1.0), 1.0)
         return (signs * margin)[free], (signs[:, None] * jacobian)[free, :-1]
 
-    def conditions(self, y: Array, found: Answers) -> tuple[tuple[_Active, ...], float]:
-        """Return the active constraints of a point y (N + 1,) [1] and the residual of the conditions [1].
+    def conditions(self, y: Array, found: Answers) -> tuple[dict[str, float], float]:
+        """Return the active constraints of a point y (N + 1,) [1] with their prices, and the residual of the
+        conditions [1].
+
+        A price is the relative change of the objective over a relative change of the limit, to first order.
 
         The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
         least zero, but for the equality's: the residual is the length of what is left over.
@@ -207,8 +200,7 @@ class Programme:
             prices[name] = prices.get(name, 0.0) + float(fall * multiplier)
         prices.pop(self.question.objective, None)
         whole = (2.0 if self.question.objective == CENTRE_SHIFT else 1.0) * y[-1]
-        told = ((name, price / whole) for name, price in prices.items())
-        active = tuple(_Active(name, price) for name, price in told if abs(price) > LEAST_PRICE)
+        active = {name: price / whole for name, price in prices.items() if abs(price / whole) > LEAST_PRICE}
         return active, float(residual)
 
 
@@ -243,7 +235,8 @@ class Outcome:
         solved: designs that were solved.
         design: the design there; answers: its own; both None where its path does not reach the end.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
-        residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
+        residual: of the Karush-Kuhn-Tucker conditions, relative; active: price of each constraint that
+            holds [1].
     """
 
     at: Array
@@ -254,7 +247,7 @@ class Outcome:
     objective: float = math.nan
     violation: float = math.inf
     residual: float = math.nan
-    active: tuple[_Active, ...] = ()
+    active: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def converged(self) -> bool:
@@ -372,17 +365,18 @@ def search(question: Question, begin: Array, progress: Progress) -> list[Outcome
     return [optimise(question, start) for start in watched(list(begin), progress)]
 
 
-def settled(question: Question, found: Outcome) -> tuple[Outcome, evaluate.Accurate]:
-    """Return an optimum with the control points that its own answers take, found again with them if these are
-    more than it was found with, and what it answers."""
+def settled(question: Question, found: Outcome) -> Outcome:
+    """Return an optimum with its answers by as many control points as their accuracy takes, found again with
+    them if these are more than it was found with."""
     while True:
-        answers = question.accurate(question.values(found.at))
-        if answers.control_points <= question.control_points:
-            return found, answers
-        question = replace(question, control_points=answers.control_points)
+        found = replace(found, answers=question.accurate(question.values(found.at)))
+        points = found.answers.control_points
+        if points <= question.control_points:
+            return found
+        question = replace(question, control_points=points)
         again = optimise(question, found.at[:-1])
         if not again.converged:
-            return found, answers
+            return found
         found = again
 
 

@@ -3,31 +3,29 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 from scipy.stats import qmc
 
+from spline_model.accuracy import DEFAULT, MOST
+from spline_model.confirmed import MORE
 from spline_model.parameters import CENTRES, MATERIAL, POINTS
 from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism, nearest
 from studies.cases.keys import SIDES
 from studies.cases.section import refuse_tapers
 from studies.design import evaluate
-from studies.design.evaluate import (
-    CENTRE_SHIFT,
-    CONTROL_POINTS,
-    STIFFNESS,
-    STRESS,
-    TRAVEL,
-    VARIATION,
-    Answers,
-)
+from studies.design.evaluate import Answers
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep import varied
 
+#: Control points that are added where the accuracy is not reached.
+FURTHER = 2
 #: Bounds of a number of a section or material where none are given, over its own.
 ROOM = (0.5, 2.0)
 #: Step of the differences by which a case's numbers are followed to those of its strips: polynomials of the
@@ -99,7 +97,7 @@ class Question:
     wanted: float = math.nan
     allowable_stress: float = math.inf
     ratios: tuple[_Ratio, ...] = ()
-    control_points: int = CONTROL_POINTS
+    control_points: int = evaluate.CONTROL_POINTS
 
     @classmethod
     def of(
@@ -140,8 +138,8 @@ class Question:
     def objectives(self) -> tuple[str, ...]:
         """What may be made least: the shift of a crossing that there is, the variation of a driven stiffness,
         and stress."""
-        shift = (CENTRE_SHIFT,) if self.start.crossing_point is not None else ()
-        return (*shift, *(() if self.start.rotation is None else (VARIATION,)), STRESS)
+        shift = (evaluate.CENTRE_SHIFT,) if self.start.crossing_point is not None else ()
+        return (*shift, *(() if self.start.rotation is None else (evaluate.VARIATION,)), evaluate.STRESS)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -151,7 +149,7 @@ class Question:
     @property
     def held(self) -> str:
         """The quantity that is wanted: where the bodies follow the loads, how far the body goes."""
-        return TRAVEL if self.start.rotation is None else STIFFNESS
+        return evaluate.TRAVEL if self.start.rotation is None else evaluate.STIFFNESS
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -206,12 +204,26 @@ class Question:
         names, chain = self._parameters(self.own if values is None else values)
         return evaluate.answers(design, control_points or self.control_points, names, chain)
 
-    def accurate(self, values: Array | None = None) -> evaluate.Accurate:
-        """Return the answers of a design with as many control points as its accuracy takes.
+    def accurate(self, values: Array | None = None) -> Answers:
+        """Return the answers of a design with their errors, and as many control points as `DEFAULT` takes.
 
-        values: variables (N,) in the file's units; None: those of the start.
+        The errors are estimated by `MORE` control points. values: variables (N,) in the file's units; None:
+        those of the start.
+
+        Raises:
+            evaluate.PathEnds: the fewest control points do not reach the end of the range.
         """
-        return evaluate.accurate(lambda points: self.answers(values, points), self.quantities)
+        solved, least = cache(lambda points: self.answers(values, points)), math.inf
+        found = replace(solved(evaluate.CONTROL_POINTS), errors=dict.fromkeys(self.quantities, math.nan))
+        for points in range(evaluate.CONTROL_POINTS, MOST + 1, FURTHER):
+            if least <= DEFAULT:
+                break
+            with suppress(evaluate.PathEnds):
+                mine, fine = solved(points), solved(points + MORE)
+                errors = {name: mine.apart(fine, name) for name in self.quantities}
+                if max(errors.values()) < least:
+                    least, found = max(errors.values()), replace(mine, errors=errors)
+        return found
 
     def _parameters(self, values: Array) -> tuple[list[str], Array]:
         """Return names (R,) of the sensitivities, and derivatives (R, N) by the variables, in SI units per

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -11,8 +11,7 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import OF_SIDES
-from studies.cases.mechanism import Mechanism
-from studies.cases.problem import Problem
+from studies.cases.mechanism import Strip
 from studies.effects.scenes import Answer, Run, Scene, strayed, tried
 from studies.errors import Unanswered
 from studies.kinds import Progress
@@ -123,8 +122,6 @@ def _timed(scenes: Sequence[Scene], run: Run) -> list[Scene]:
     return [replace(each, wall_s=float(np.median(own))) for each, own in zip(scenes, walls, strict=True)]
 
 
-Either = TypeVar("Either", bound=Problem | Mechanism)
-
 #: What stands for all of them at once, and for shear.
 ALL, SHEAR = "all three", "shear"
 CHANGED = ("trajectory", "stiffness", "torque", "stress", "first_mode")
@@ -132,7 +129,7 @@ CHANGED = ("trajectory", "stiffness", "torque", "stress", "first_mode")
 CONTROL_POINTS, ELEMENTS = 10, 160
 
 
-def with_sections(design: Either, names: tuple[str, ...] = OF_SIDES) -> Either:
+def with_sections(design: Design, names: tuple[str, ...] = OF_SIDES) -> Design:
     """Return a design with these effects beside its own, its sections as the rectangles of their A and I;
     roots are those of one block."""
     tables = {"root_compliance": {"root": "monolithic"}} | dict(design.effects.tables)
@@ -140,13 +137,13 @@ def with_sections(design: Either, names: tuple[str, ...] = OF_SIDES) -> Either:
     return _sided(replace(design, effects=effects))
 
 
-def _sided(design: Either) -> Either:
+def _sided(design: Design) -> Design:
     """Return a design whose strips have the sides of the rectangles with their A and I."""
-    if isinstance(design, Problem):
-        known = design.width is not None
-        return design if known else replace(design, outer_fibre=None, **design.rectangle())
-    strips = [each if each.width is not None else replace(each, **each.rectangle()) for each in design.strips]
-    return replace(design, strips=tuple(strips))
+
+    def sides(strip: Strip) -> dict[str, Any]:
+        return {"outer_fibre": None, **strip.rectangle()} if strip.width is None else {}
+
+    return design.changed(sides)
 
 
 def prices(design: Design) -> list[dict[str, Any]]:

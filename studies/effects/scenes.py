@@ -10,7 +10,7 @@ import numpy as np
 from spline_model.compile import compile_scene
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes
-from spline_model.motion.leapfrog import highest_frequency, stability_limit
+from spline_model.motion.leapfrog import STABILITY_LIMIT, highest_frequency
 from spline_model.motion.start import set_in_motion
 from spline_model.statics import static_state
 from studies.answers.adapters import answer_modes, answer_release, answer_static
@@ -18,8 +18,6 @@ from studies.answers.models import put
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
-from studies.cases.mechanism import Mechanism as MechanismData
-from studies.cases.problem import Problem
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
 
@@ -36,6 +34,8 @@ CALLED = {"stretching": "inextensible strips", "strip_inertia": "massless strips
 #: What says how large a scene is, and what its change against the full one is told by.
 SIZES = ("unknowns", "degrees_of_freedom", "highest_frequency_Hz", "explicit_step_s")
 CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
+#: omega h up to which central differences are stable [1].
+CENTRAL_LIMIT = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,21 +114,21 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
 
     Unknowns [1] are coordinates, axial forces and multipliers of a step's equations; degrees of freedom [1]
     are independent coordinates with inertia. The highest frequency [rad/s] is the larger one of the scene at
-    rest and at the start; it gives the largest stable step [s] of the leapfrog.
+    rest and at the start; it gives the largest stable step [s] of the leapfrog, or of central differences
+    for strips that cannot stretch.
 
     Raises:
         BadInput: a setting that the model rejects. spline_model.errors.ConvergenceError: no start is reached.
     """
     asked = put(design, settings, moving=True)
     mechanism: Mechanism = asked.modelled
-    body = design.body if isinstance(design, MechanismData) else None
     with asked.refusals():
         system = compile_scene(mechanism.released())
         motion = set_in_motion(system)
-        start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
+        start = static_state(mechanism.at_start(), design.rotation, body=design.body)[: system.layout.size]
         highest = highest_frequency(motion, start)
         modes = linear_modes(system, system.rest)[0]
-    step = stability_limit(motion) / highest
+    step = (CENTRAL_LIMIT if motion.inextensible else STABILITY_LIMIT) / highest
     return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
 
 
@@ -269,7 +269,7 @@ class Run:
 def _rest(design: Design, full: Answer) -> Array:
     """Return the centres (B, 2) before weight and drives act [m]; of a pivot before it turns, which hardly
     sags."""
-    if isinstance(design, Problem):
+    if design.crossing_point is not None:
         return full.path[:, 0]
     return np.array([body.centre for body in design.bodies]).reshape(-1, 2)
 

@@ -13,7 +13,7 @@ from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
 from spline_model.section_forces import StripFields, strip_fields
 from spline_model.solution import Status
-from spline_model.statics import solve_mechanism
+from spline_model.statics import solve_statics
 from studies.cases.design import flexural_scale
 from studies.interactive.design import PRINTED, Curve, Placing, Snapshot
 from studies.interactive.motion import Motion, Pull
@@ -83,7 +83,7 @@ class Mechanics:
             return FIRST, "not estimated: the case turns another body"
         heavy = bool(abs(self._load[1]) > HEAVY * self.scale["force"])
         how: dict[str, Any] = {"body": self._body, "increments": INCREMENTS, "raise_on_failure": False}
-        path = solve_mechanism(self.piece.modelled(loaded=not heavy), rotation=self._reach, **how)
+        path = solve_statics(self.piece.modelled(loaded=not heavy), rotation=self._reach, **how)
         if path.status is not Status.CONVERGED or path.segments != 1:
             why = path.message or "its strips want segments, which a body in the hand does not take"
             return FIRST, f"not estimated: {why}"

@@ -39,12 +39,12 @@ class Motion:
     def advance(self, steps: int, step: float) -> float:
         """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
         good state being kept."""
-        stepper, counted = self._stepper, sequential_impulse.COUNTERS.index("sweeps")
-        before, kept = int(stepper.counters[counted]), stepper.kept()
+        stepper = self._stepper
+        before, kept = stepper.counted(0)["sweeps"], stepper.kept()
         if stepper.take(0.0, step, 0, steps, steps + 1, np.zeros((0, stepper.width))) < steps:
             stepper.take_back(kept)
             return 0.0
-        self.iterations = int(stepper.counters[counted]) - before
+        self.iterations = stepper.counted(0)["sweeps"] - before
         return steps * step
 
     def state(self) -> tuple[Array, Array, float, float]:

@@ -11,13 +11,13 @@ from spline_model.modes import natural_frequencies
 from studies.answers.critical import critical_load
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
-from studies.cases.design import Design, as_toml, design_of, document_of
+from studies.cases.design import SHIPPED, Design, as_toml, design_of, document_of
 from studies.cases.document import parsed
 from studies.cases.effects import DEFAULT
 from studies.cases.keys import GROUND, HINGE, MATERIALS
 from studies.cases.mechanism import Body
-from studies.cases.problem import FOLDER, Problem
-from studies.cases.section import of_sides, refuse_tapers
+from studies.cases.problem import FOLDER
+from studies.cases.section import refuse_tapers
 from studies.errors import BadInput
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
@@ -84,6 +84,7 @@ PARAMETERS: dict[str, _Parameter] = {
     )
 }
 _OF_BODY = {"body_mass": "mass", "body_moment_of_inertia": "moment_of_inertia"}
+_OF_PIVOTS = ("length", "inclination", "crossing_ratio")
 _OF_SCENE = ("relaxation_time", "load", "time_scale")
 
 
@@ -122,22 +123,15 @@ class Piece:
         """The design with its load, for any command and either model."""
         base, values = self.base, self.values
         own = {name: value for name, value in values.items() if name not in _OF_SCENE}
-        if "thickness" in own:
-            own |= of_sides(own["width"], own["thickness"])
         tables: dict[str, dict[str, Any]] = {}
         if values["relaxation_time"]:
             tables["strip_damping"] = {"relaxation_time": values["relaxation_time"]}
         if load := values["load"]:
-            of = {} if isinstance(base, Problem) else {"body": base.body}
-            tables["applied_force"] = {"force": (0.0, -load), **of}
+            tables["applied_force"] = {"force": (0.0, -load), "body": base.body}
         effects = replace(base.effects, names=(*DEFAULT, *tables), tables=tables)
-        if isinstance(base, Problem):
-            return replace(base, effects=effects, **own)  # type: ignore[arg-type]
-        body = {own_name: own.pop(name) for name, own_name in _OF_BODY.items()}
-        held = _held(base)
-        strips = tuple(replace(strip, **own) for strip in base.strips)  # type: ignore[arg-type]
-        bodies = tuple(replace(b, **body) if b is held else b for b in base.bodies)  # type: ignore[arg-type]
-        return replace(base, strips=strips, bodies=bodies, effects=effects)
+        body = {attribute: own.pop(name) for name, attribute in _OF_BODY.items()}
+        made = base.changed(lambda strip: own, **body)
+        return replace(made, effects=effects).checked("design")
 
     @property
     def body(self) -> Body:
@@ -226,8 +220,7 @@ def opened(name: str, document: Mapping[str, Any], known: Values, where: str = "
     }
     values |= {own: getattr(_held(design), attribute) for own, attribute in _OF_BODY.items()}
     values |= _of_strips(design)
-    if isinstance(design, Problem):
-        values |= {n: getattr(design, n) for n in ("length", "inclination", "crossing_ratio")}
+    values |= {n: getattr(design, n) for n in _OF_PIVOTS if hasattr(design, n)}
     ordered = {n: values[n] for n in PARAMETERS if n in values} | dict(known)
     piece = Piece(name=name, document=document, base=design, values=ordered)
     if "time_scale" in known:
@@ -259,7 +252,6 @@ FIRST: dict[str, tuple[str, str, str, Values]] = {
 PRESETS = {
     name: opened(name, parsed(FOLDER / f"{case}.toml"), known) for name, (*_, case, known) in FIRST.items()
 }
-SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
 def own(case: Path) -> Piece:

@@ -253,7 +253,7 @@ def plot(
     Parameters
     ----------
     solution
-        Result of `solve_statics`, `solve_mechanism`, `solve_release`, `solve_motion` or
+        Result of `solve_statics`, `solve_statics`, `solve_motion`, `solve_motion` or
         `natural_frequencies` of `spline_model` or `fe_reference`, or an answer of
         ``studies.answers.adapters``.
     design : default None

@@ -99,7 +99,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
     asked = put(frame.design, settings)
     how: dict[str, Any] = {"increments": frame.design.increments, "control": "arc-length", "branch": branch}
     with asked.refusals():
-        path = asked.model.solve_mechanism(asked.modelled, raise_on_failure=False, **how)
+        path = asked.model.solve_statics(asked.modelled, raise_on_failure=False, **how)
     if (path.inertia < 0).any():
         raise BadInput(
             f"spline: measure: got {settings.measure}, expected one with a potential: stability has no other"
@@ -159,7 +159,7 @@ def _led_on(path: Path, load: Array) -> tuple[Path, Array]:
     factor of its states and the rate of that in its parameter, (2, S).
     """
     at = int(np.abs(load).argmax())
-    held, last = np.append(path.control.held, at), path.last
+    held, last = np.append(path.control.held, at), path.trail[-1]
     ends = last.y[held] + np.outer((0.0, 1.0), np.where(held == at, STEPS * PART * last.y[at], 0.0))
     on = Path(control=path.control)
     on.begin(replace(path.control, held=held, values=ends, load=None), last.y)

@@ -128,7 +128,6 @@ class _Published:
         """Return the design under so many times its loads, of None those of its first value, as a beam or
         with the effects that the answer names."""
         load = self.values[0].load if load is None else load
-        assert isinstance(self.design, Mechanism)
         acting = self.design.effects.grown(load, WEIGHT).plus(*(() if answer == BEAM else answer.split(", ")))
         return Frame(design=replace(self.design, effects=acting), load=load, body=self.body)
 
@@ -161,7 +160,7 @@ def read_published(path: Path) -> _Published:
         raise CaseError(f"{where}: [problem] or [[values]]: {error}") from None
     if len({tuple(value.limit) for value in values}) != 1:
         raise CaseError(f"{where}: values: got limits of different answers or no values, expected the same")
-    if isinstance(problem.design, Mechanism):
+    if problem.design.crossing_point is None:
         known = [each.name for each in problem.design.bodies]
         if problem.body not in known:
             expected = document.nearest(problem.body, known)

@@ -21,7 +21,6 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.problem import Problem
 from studies.engine import Answer, Claim, Part, Row, Study
 from studies.errors import BadInput
 from studies.published import case
@@ -47,9 +46,9 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
         BadInput: what the model refuses to be asked.
     """
     design = published(name).design
-    if isinstance(design, Problem):  # the shift of the crossing point over the length at a rotation
+    if design.crossing_point is not None:  # the shift of the crossing point over the length at a rotation
         response = answer_static(replace(design, rotation=math.radians(value.at)), SETTINGS[model])
-        found = float(np.hypot(*response.centre_shift[-1]) / design.length)
+        found = float(np.hypot(*response.centre_shift[-1]) / design.strips[0].length)
     elif value.quantity in case.PLACES:
         found = _moved(name, model, answer, value.load)[case.PLACES.index(value.quantity)]
     else:

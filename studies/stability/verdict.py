@@ -7,7 +7,7 @@ elements, which share nothing with it, agree with it within the tolerance.
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any, Self
 
@@ -159,14 +159,8 @@ def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:
     """Return the pivot as a mechanism of two strips and a body, driven to `degrees` [deg]."""
-    return Mechanism(
-        strips=given.strips,
-        bodies=given.bodies,
-        body=given.body,
-        rotation=math.radians(degrees),
-        increments=given.increments,
-        effects=given.effects,
-    )
+    parts = {each.name: getattr(given, each.name) for each in fields(Mechanism)}
+    return Mechanism(**parts | {"rotation": math.radians(degrees)})
 
 
 #: Largest distance that counts as right [1], over the largest torque and displacement of a path, and over the

@@ -6,7 +6,7 @@ An error in the file is one line before anything is solved.
 import copy
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,9 @@ from scipy.stats import qmc
 from studies.answers.models import put
 from studies.answers.settings import MODELS
 from studies.cases import document
+from studies.cases.design import case_file
 from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
-from studies.cases.problem import FOLDER
 from studies.cases.rules import TRUTH, Key, Rule, choice, positive, shown, text, whole
 from studies.kinds import Array
 from studies.sweep import points, varied
@@ -46,20 +46,17 @@ SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 CHUNK = 64
 #: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
 CHUNKS = 16
-#: Kind of an analysis -> key of an option, the keyword that it sets, its rule and what it is if not given.
-OPTIONS: dict[str, tuple[tuple[str, str, Rule, Any], ...]] = {
-    "static": (),
-    "modes": (
-        ("rotation_deg", "rotation", ROTATION, None),
-        ("count", "count", whole(1, 100), 3),
-        ("held", "held", TRUTH, None),
-    ),
-    "release": (
-        ("duration_s", "duration", positive("s"), 0.05),
-        ("step_s", "step", positive("s"), None),
-        ("integrator", "integrator", text("the name of an integrator"), None),
-    ),
+#: Kind of an analysis -> its options with their rules; and what options are that are not given.
+OPTIONS: dict[str, dict[str, Rule]] = {
+    "static": {},
+    "modes": {"rotation_deg": ROTATION, "count": whole(1, 100), "held": TRUTH},
+    "release": {
+        "duration_s": positive("s"),
+        "step_s": positive("s"),
+        "integrator": text("the name of an integrator"),
+    },
 }
+USUAL: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +104,8 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     tables = _tables(where, content)
     if not tables["vary"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
-    case = _case(where, content.get("case"), folder)
+    named = replace(text("the name of a case or a file"), read=partial(case_file, folder=folder))
+    case = document.parsed(document.admitted(where, "case", named, content.get("case")))
     model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
     known = varied.known(str(content["case"]), case, model)
     fixed = dict(_leaves(tables["set"]))
@@ -159,19 +157,6 @@ def _values(
     return document.values(where, keys, given, label)
 
 
-def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
-    """Return the document of the case: one that comes with the suite, or a file beside DESIGNS.toml."""
-    if not isinstance(name, str) or not name:
-        raise CaseError(f"{where}: case: got {shown(name)}, expected the name of a case or a file")
-    own = FOLDER / f"{name}.toml"
-    if own.is_file():
-        return document.parsed(own)
-    if name.endswith(".toml"):
-        return document.parsed(folder / name)
-    expected = document.nearest(name, sorted(path.stem for path in FOLDER.glob("*.toml")))
-    raise CaseError(f"{where}: case: got {name}, expected {expected}, or a file that ends in .toml")
-
-
 def _refuse_overlaps(where: str, keys: list[str], case: Mapping[str, Any]) -> None:
     """Raise CaseError if a key comes twice, whole and in part, or beside a slenderness that sets it."""
     for key in keys:
@@ -185,13 +170,11 @@ def _refuse_overlaps(where: str, keys: list[str], case: Mapping[str, Any]) -> No
 
 
 def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Return kind and options of a task."""
+    """Return kind and options of a task, by their names without units."""
     kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
-    rows = (("kind", "kind", choice(*KINDS), kind), *OPTIONS[kind])
-    keys = [Key("analysis", name, keyword, rule, optional=True) for name, keyword, rule, _ in rows]
-    found = {keyword: usual for _, keyword, _, usual in rows if usual is not None}
-    found |= document.values(where, keys, given, "analysis")
-    return found.pop("kind"), found
+    found = _values(where, "analysis", {"kind": choice(*KINDS), **OPTIONS[kind]}, given)
+    named = {name.rpartition("_")[0] or name: value for name, value in found.items() if name != "kind"}
+    return kind, USUAL[kind] | named
 
 
 def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:

@@ -99,10 +99,6 @@ def _standing(each: Quantity) -> _Column:
     return _Column(f"{each.meaning}, {each.standing}", standing)
 
 
-def _variation(answer: Response) -> float:
-    return float(np.ptp(answer.stiffness) / np.abs(answer.stiffness[0]))
-
-
 def _unstable(answer: Response) -> int:
     lost = getattr(answer.solution, "inertia", None)
     return -1 if lost is None else int(np.count_nonzero(lost))
@@ -113,18 +109,14 @@ def _moved(answer: Response) -> Array:
     return np.asarray(np.hypot(*answer.centre_shift.T))
 
 
-def _shifted(axis: int, answer: Response) -> Any:
-    """Return the displacement of the crossing point along an axis at the end [m]."""
-    return answer.centre_shift[-1, axis]
-
-
 PATH = {
     "rotation_rad": _Column("rotation at the end", lambda a: a.rotation[-1] if a.body else math.nan),
     **{each.name_in_sweep: _standing(each) for each in QUANTITIES if each.standing},
     "stiffness_rest_Nm_per_rad": _Column("rotational stiffness at rest", lambda a: a.stiffness[0]),
     "stiffness_end_Nm_per_rad": _Column("rotational stiffness at the end", lambda a: a.stiffness[-1]),
     "stiffness_variation": _Column(
-        "largest less smallest stiffness of the path, over that at rest", _variation
+        "largest less smallest stiffness of the path, over that at rest",
+        lambda a: np.ptp(a.stiffness) / abs(a.stiffness[0]),
     ),
     "moment_defect": _Column(
         "largest relative imbalance of the strips' moments, of a spline",
@@ -163,8 +155,12 @@ SHIFT = {
         "displacement of the body's point at the strips' crossing, at the end", lambda a: _moved(a)[-1]
     ),
     "centre_shift_max_m": _Column("largest displacement of that point", lambda a: _moved(a).max()),
-    "centre_shift_end_x_m": _Column("x of the displacement at the end", partial(_shifted, 0), False),
-    "centre_shift_end_y_m": _Column("y of the displacement at the end", partial(_shifted, 1), False),
+    "centre_shift_end_x_m": _Column(
+        "x of the displacement at the end", lambda a: a.centre_shift[-1, 0], False
+    ),
+    "centre_shift_end_y_m": _Column(
+        "y of the displacement at the end", lambda a: a.centre_shift[-1, 1], False
+    ),
 }
 
 
@@ -238,12 +234,11 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     for key, column in columns.items():
         table[key] = [json.dumps(value) if isinstance(value, list) else value for value in column]
     table |= {STATUS: status, REASON: reason}
-    arrays = [pa.array(each) for each in table.values()]
     for name, quantity in stored(task).items():
         kept = np.array([row.get(name, math.nan) for row in found])
         kind = pa.int64() if quantity.whole else pa.float64()
-        arrays.append(pa.array(kept, type=kind, mask=np.isnan(kept)))
-    return pa.Table.from_arrays(arrays, names=[*table, *task.quantities])
+        table[name] = pa.array(kept, type=kind, mask=np.isnan(kept))
+    return pa.table(table)
 
 
 def solve(task: Task, given: Mapping[str, Any]) -> tuple[str, str, dict[str, float]]:

@@ -18,13 +18,13 @@ import multiprocessing
 import os
 import signal
 import sys
+from collections import deque
 from collections.abc import Iterator
 from concurrent import futures
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from importlib.metadata import version
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any, NamedTuple
 
 import pyarrow as pa
@@ -99,30 +99,22 @@ def sweep(
 
 
 def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, pa.Table]]:
-    """Yield number and rows of the chunks as they are solved, a bounded number of them under way.
-
-    An interruption may come while this waits for the queue: unlike `futures.wait`, it then leaves no locks.
-    """
-    ended: SimpleQueue[futures.Future[pa.Table]] = SimpleQueue()
-    pending: dict[futures.Future[pa.Table], int] = {}
-    waiting = iter(missing)
-    while True:
-        for number in islice(waiting, AHEAD * pool.workers - len(pending)):
-            start, stop = plan.span(number)
-            future = pool.executor.submit(solve_chunk, plan.task, start, plan.rows(start, stop))
-            pending[future] = number
-            future.add_done_callback(ended.put)
-        if not pending:
-            return
-        future = ended.get()
-        number = pending.pop(future)
-        yield number, _result(plan, number, future)
+    """Yield number and rows of the chunks in their order, a bounded number of them under way."""
+    under_way: deque[tuple[int, futures.Future[pa.Table]]] = deque()
+    for number in missing:
+        start, stop = plan.span(number)
+        future = pool.executor.submit(solve_chunk, plan.task, start, plan.rows(start, stop))
+        under_way.append((number, future))
+        if len(under_way) > AHEAD * pool.workers:
+            yield _result(plan, *under_way.popleft())
+    for each in under_way:
+        yield _result(plan, *each)
 
 
-def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Table:
-    """Return the rows of a chunk; SweepError if its workers failed."""
+def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> tuple[int, pa.Table]:
+    """Return number and rows of a chunk; SweepError if its workers failed."""
     try:
-        return future.result()
+        return number, future.result()
     except (Exception, futures.CancelledError) as error:
         first, last = plan.span(number)
         raise SweepError(

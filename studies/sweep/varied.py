@@ -65,26 +65,25 @@ def known(where: str, document: Mapping[str, Any], model: str) -> dict[str, Rule
 
 def _keys(where: str, document: Mapping[str, Any]) -> Iterator[tuple[str, Key]]:
     """Yield table and key of all keys that a case may have, with `strips.NAME` and `loads.1` as tables."""
-    if is_mechanism(document):
-        for table, key in _keys_of_mechanism(where, document):
-            if key.rule.kind != "text":
-                yield table, key
-    else:
-        yield from ((key.section, key) for key in keys.KEYS)
+    kind = keys.MECHANISM if is_mechanism(document) else keys.PIVOT
+    own = {"strips": (*keys.STRIP, *keys.OWN), "bodies": keys.BODY}
+    shared = {section: rows for section, rows in kind.items() if section not in own}
+    for section, rows in shared.items():
+        yield from ((section, key) for key in rows if key.rule.kind != "text")
+    for section, rows in own.items() if is_mechanism(document) else ():
+        for name in _names_of(where, document, section):
+            yield from ((f"{section}.{name}", key) for key in rows if key.rule.kind != "text")
     yield from ((key.section, key) for rows in keys.EFFECT_KEYS.values() for key in rows)
     for section, listed in keys.LISTS.items():
         for place, _ in enumerate(tables(where, document, section), start=1):
             yield from ((f"{section}.{place}", key) for name in listed for key in keys.EFFECT_KEYS[name])
 
 
-def _keys_of_mechanism(where: str, document: Mapping[str, Any]) -> Iterator[tuple[str, Key]]:
-    """Yield table and key of what strips share, of the drive, and of each strip and body by its name."""
-    yield from ((key.section, key) for key in (*keys.SECTION, *keys.MATERIAL, *keys.DRIVE))
-    for section, rows in (("strips", (*keys.STRIP, *keys.OWN)), ("bodies", keys.BODY)):
-        for label, part in tables(where, document, section):
-            given = {key: value for key, value in part.items() if key == "name"}
-            name = values(where, rows[:1], given, label)["name"]
-            yield from ((f"{section}.{name}", key) for key in rows)
+def _names_of(where: str, document: Mapping[str, Any], section: str) -> Iterator[str]:
+    """Yield the names of the strips or bodies of a case."""
+    for label, part in tables(where, document, section):
+        given = {key: value for key, value in part.items() if key == "name"}
+        yield values(where, keys.BODY[:1], given, label)["name"]
 
 
 def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:

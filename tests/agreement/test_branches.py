@@ -23,7 +23,7 @@ def test_a_column_buckles_at_its_critical_load(models):
 
     def found(**grid):
         made = column(models, load=4.0, slenderness=slenderness, **grid)
-        (point,) = models.solve_mechanism(made, increments=7).critical_points
+        (point,) = models.solve_statics(made, increments=7).critical_points
         assert (point.kind, point.inertia) == ("bifurcation", 1)
         return 4.0 * point.load_factor
 
@@ -37,7 +37,7 @@ def led_ends(models, increments, late=0, **grid):
     """
     ends = []
     for count in increments:
-        answer = models.solve_mechanism(led(models, **grid), increments=count)
+        answer = models.solve_statics(led(models, **grid), increments=count)
         assert (answer.inertia.max(), answer.critical_points, answer.message) == (0, (), "")
         stored = answer.bending_energy[-1] + answer.axial_energy[-1]
         ends.append((tip(answer), stored, answer.work[-1 - late] / stored - 1))
@@ -73,7 +73,7 @@ def test_a_heavy_column_sinks_to_its_stable_side(models):
         ends = []
         for weight in HEAVY_TIPS:
             for offset in (1e-3, -1e-3):
-                answer = models.solve_mechanism(heavy(models, weight, offset, **grid), increments=1)
+                answer = models.solve_statics(heavy(models, weight, offset, **grid), increments=1)
                 assert (answer.inertia.max(), answer.message) == (0, "")
                 ends.append(math.copysign(1.0, offset) * tip(answer, 0))
         return np.array(ends)

@@ -28,7 +28,7 @@ SHEAR = STRETCH * 2.0 * (1.0 + SECTION["poisson_ratio"]) * 6.0 / 5.0
 def tips(models, name, given, **grid):
     """Rotation [rad], x/L and y/L (20, 3) of the tip under shares of a load."""
     made = one_strip(models, [name], {name: given}, section=SECTION, **grid)
-    path = models.solve_mechanism(made, increments=20)
+    path = models.solve_statics(made, increments=20)
     return path.bodies["tip"][1:, [2, 0, 1]] / (1.0, LENGTH, LENGTH)
 
 
@@ -216,7 +216,7 @@ def answers(models, **grid):
     """Displacement of the tip across and along by a force there, by its weight, and the first frequency."""
 
     def tip(*given):
-        path = models.solve_mechanism(cantilever(models, *given, **grid), increments=1)
+        path = models.solve_statics(cantilever(models, *given, **grid), increments=1)
         return path.shape[-1, 0, -1] - (LENGTH, 0.0)
 
     across, along = (tip("tip_force", {"strip": "strip", "force": f}) for f in ((0.0, FORCE), (PULL, 0.0)))
@@ -267,7 +267,7 @@ def test_an_arc_of_any_opening_bends_as_its_length(models):
     def error(**grid):
         def tip(**mesh):
             made = one_strip(models, given, given, end=(chord, 0.0), section=section, **mesh)
-            return models.solve_mechanism(made, increments=10).bodies["tip"][-1]
+            return models.solve_statics(made, increments=10).bodies["tip"][-1]
 
         return np.abs(refined(tip, **grid) - [*(place / bent), TURN]).max()
 
@@ -293,7 +293,7 @@ def test_free_arc_with_pre_strain_turns_by_it_without_stress(models):
             parameters={"pre_strain": {"curvature": curvature}},
             **grid,
         )
-        fields = models.strip_fields(made, models.solve_mechanism(made, increments=4).states)
+        fields = models.strip_fields(made, models.solve_statics(made, increments=4).states)
         moment = np.abs(fields.bending_moment[-1]).max() / (
             YOUNG * given["second_moment_of_area"] * curvature
         )

@@ -176,10 +176,13 @@ CURLS = {"clamped_width": {}, "anticlastic": {}}
 #: Grid of each model, and its motions.
 BRIEF, ALPHA = {"duration": 2e-3, "step": 1e-4}, {"integrator": "generalised-alpha", "step": 1e-5}
 MOTIONS = {
-    spline_model: ({"control_points": 6}, {"solve_motion": BRIEF, "solve_impulses": BRIEF}),
+    spline_model: ({"control_points": 6}, (("solve_motion", BRIEF), ("solve_impulses", BRIEF))),
     fe_reference: (
         {"elements": 4},
-        {"solve_motion": {"duration": 1e-4, "step": 1e-7}, "solve_release": {"duration": 1e-4, **ALPHA}},
+        (
+            ("solve_motion", {"duration": 1e-4, "step": 1e-7}),
+            ("solve_motion", {"duration": 1e-4, **ALPHA}),
+        ),
     ),
 }
 
@@ -195,7 +198,7 @@ def found(models, names, curls):
     )
     moved = [
         getattr(models, solve)(model, start=1.0, **steps).rotation
-        for solve, steps in motions.items()
+        for solve, steps in motions
         if not (curls and solve == "solve_impulses")
     ]
     path = models.solve_statics(model, rotation=1.0, increments=8, order="together")

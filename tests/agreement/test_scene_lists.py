@@ -40,8 +40,8 @@ def test_loads_superpose(models):
         at_tip = [{"strip": "beam", **each, **more} for each, more in zip(pull, turn, strict=True)]
         several = beam("end", models, applied_force=pull[:count], applied_moment=turn)
         one = beam("end", models, applied_force={"force": (0.2, 2.0)}, applied_moment={"moment": 0.5})
-        places = [models.solve_mechanism(each).bodies["end"] for each in (one, several)]
-        places.append(models.solve_mechanism(beam(None, models, tip_force=at_tip)).tips["beam"])
+        places = [models.solve_statics(each).bodies["end"] for each in (one, several)]
+        places.append(models.solve_statics(beam(None, models, tip_force=at_tip)).tips["beam"])
         return max(np.abs(each - places[0]).max() for each in places)
 
     gates.hold(f"{short(models)}_lists", error)
@@ -52,7 +52,7 @@ def test_a_tip_moment_rolls_up_three_turns():
 
     def error(segments=8):
         moment = {"strip": "beam", "force": (0.0, 0.0), "moment": 6.0 * math.pi}
-        path = spline.solve_mechanism(
+        path = spline.solve_statics(
             beam(grid={"segments": segments}, tip_force=moment), increments=30, check=False
         )
         return np.abs(path.tips["beam"][:, 2] - 6.0 * math.pi * path.load_factor).max()
@@ -70,7 +70,7 @@ def test_reactions_balance_the_loads(models):
     }
 
     def error(weigh=1.0):
-        path = models.solve_mechanism(beam("end", models, **given))
+        path = models.solve_statics(beam("end", models, **given))
         lift, twist = (path.reactions[-1, path.prescribed.index(("end", name))] for name in ("y", "rotation"))
         root, place = path.clamp_reactions[-1, 0, 0], path.bodies["end"][-1]
         force = root[:2] + np.array([1.3, lift - 2.5])
@@ -99,7 +99,7 @@ def test_springs_bear_what_their_stiffness_says(models):
 
     def error(stiffness=0.7, **how):
         given = {"spring": {"rotational_stiffness": stiffness}, "applied_moment": {"moment": 2.0}}
-        path = models.solve_mechanism(beam("end", models, **given), increments=4, **how)
+        path = models.solve_statics(beam("end", models, **given), increments=4, **how)
         turn = path.rotation - path.load_factor * 2.0 / 1.7
         stored = 0.35 * path.rotation**2 - path.spring_energy
         alone = beam("end", models, more=[hung(models)], spring=SPRINGS[2])
@@ -131,7 +131,7 @@ def test_columns_on_hinges_buckle_as_euler_has_it(joints, load, root, points, mo
         given = {"models": models, "grid": grid, "own": joints | STIFF, "support": SLIDING}
         pressed = beam("end", **given, applied_force={"force": (-1.2 * load**2, 0.0)})
         how = {"increments": 6, "check": False} | ({"method": method} if method else {})
-        (buckled,) = models.solve_mechanism(pressed, **how).critical_points
+        (buckled,) = models.solve_statics(pressed, **how).critical_points
         swing = models.natural_frequencies(beam("end", **given), rotation=None, count=1).frequency[0]
         return np.array([1.2 * buckled.load_factor, 2.0 * math.pi * swing / root**2])
 
@@ -167,7 +167,7 @@ def test_hinges_and_loads_go_with_their_body():
     system has the same states."""
 
     def error(lever=1.0):
-        path, other = (spline.solve_mechanism(offset(), method=each) for each in ("condensed", "multipliers"))
+        path, other = (spline.solve_statics(offset(), method=each) for each in ("condensed", "multipliers"))
         x, y, turn = path.bodies["end"][-1]
         (fx, fy, moment), spring = (
             path.clamp_reactions[-1, 0, 1],
@@ -211,7 +211,7 @@ def test_designs_with_hinges_have_derivatives_and_batches():
     names = ("beam.end_x", "end.centre_y")
 
     def solved(end=1.0, height=0.1):
-        return spline.solve_mechanism(carried(end, height), rotation=0.4, increments=4)
+        return spline.solve_statics(carried(end, height), rotation=0.4, increments=4)
 
     found = spline.sensitivities(carried(), solved(), parameters=names)
 
@@ -260,9 +260,9 @@ def test_followers_bend_strips_as_the_elastica_has_it(models):
     def bent(method=None, **grid):
         tip = {"strip": "beam", "force": (0.0, 10.0), "follower": True}
         how = {"increments": 10, "check": False} | ({"method": method} if method else {})
-        return models.solve_mechanism(beam(None, models, STIFF, grid=grid, tip_force=tip), **how).tips[
-            "beam"
-        ][-1]
+        return models.solve_statics(beam(None, models, STIFF, grid=grid, tip_force=tip), **how).tips["beam"][
+            -1
+        ]
 
     def error(**grid):
         return np.abs(refined(bent, **grid) - followed(10.0)).max()
@@ -270,12 +270,12 @@ def test_followers_bend_strips_as_the_elastica_has_it(models):
     gate = f"{short(models)}_followers"
     held(gate, models, error, 14, (20, 40, 80))
     along = {"strip": "beam", "force": (-19.9, 0.0), "follower": True}
-    path = models.solve_mechanism(beam(None, models, tip_force=along))
+    path = models.solve_statics(beam(None, models, tip_force=along))
     assert path.critical_points == () and path.message == ""
     if models is spline:
         gates.check(gate, error(method="multipliers", control_points=14))
         both = [along | {"force": (-1e-9, 0.0)}, {"strip": "beam", "force": (-3.0, 0.0)}]
-        (found,) = spline.solve_mechanism(beam(tip_force=both), check=False).critical_points
+        (found,) = spline.solve_statics(beam(tip_force=both), check=False).critical_points
         gates.check(gate, abs(12.0 * found.load_factor / math.pi**2 - 1.0))
 
 

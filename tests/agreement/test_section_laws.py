@@ -87,7 +87,7 @@ def test_pure_bending_flattens_a_wide_strip(gate, models, grid):
         for flatness, *_ in ASHWELL:
             thickness = 0.3**2 * 0.5 / flatness
             made = strips(models, 0.3, thickness, effects=("anticlastic",), nu=poisson_ratio, **grid)
-            path = models.solve_mechanism(made, rotation=0.5, increments=4)
+            path = models.solve_statics(made, rotation=0.5, increments=4)
             rigidity = YOUNGS_MODULUS * 0.3 * thickness**3 / 12.0
             if models is spline_model:  # sections have the moment of the law, which balance has as well
                 assert path.bending_moment[-1] == pytest.approx(path.torque[-1])
@@ -137,7 +137,7 @@ def test_roots_are_springs_at_both_clamps(name, models, grid):
     rigidity, spring = YOUNGS_MODULUS * 0.1 * 0.05**3 / 12.0, 0.416 * 0.05
 
     def error(turn=3.0):
-        bent = models.solve_mechanism(made, rotation=turn, increments=5)
+        bent = models.solve_statics(made, rotation=turn, increments=5)
         moment = rigidity * 3.0 / (1.0 + 2.0 * spring)
         at_ends = models.strip_fields(made, bent.states[-1:]).rotation[0, 0, [0, -1]]
         turns = at_ends if models is fe_reference else ()
@@ -220,7 +220,7 @@ def test_the_estimate_has_what_roots_leave(aside):
             parameters={"driven_displacement": {"displacement": (0.0, 0.1 * aside)}},
             **grid,
         )
-        return models.solve_mechanism(guide, rotation=0.0, increments=10, raise_on_failure=False)
+        return models.solve_statics(guide, rotation=0.0, increments=10, raise_on_failure=False)
 
     springs, spread = torque(fe_reference, elements=80).torque, torque(spline_model)
     error = np.abs(spread.torque - springs).max() / np.abs(springs).max()

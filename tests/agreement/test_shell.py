@@ -64,7 +64,7 @@ def strip_factor(ratio, flatness, effects):
     """The same of a strip of the spline model, whose tip is turned by one radian."""
     thickness = ratio**2 / flatness
     made = strips(spline_model, ratio, thickness, effects=effects, nu=NU, control_points=12)
-    path = spline_model.solve_mechanism(made, rotation=1.0, increments=4)
+    path = spline_model.solve_statics(made, rotation=1.0, increments=4)
     return path.bending_energy[-1] / (YOUNGS_MODULUS * ratio * thickness**3 / 24.0)
 
 

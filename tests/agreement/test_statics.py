@@ -208,7 +208,7 @@ STEPS = {20: 2e-7, 40: 5e-8}
 def elements_swing(elements):
     """Rotation of the explicit finite elements at 501 instants."""
     pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=elements)
-    run = fe_reference.solve_release(
+    run = fe_reference.solve_motion(
         pivot, start=math.pi / 2, duration=DURATION, step=STEPS[elements], samples=SAMPLES
     )
     return run.time, run.rotation
@@ -224,8 +224,9 @@ def spline_swing(control_points, step=1e-6, integrator="leapfrog", **settings):
     """Rotation of the spline at the same instants."""
     slide = spline_model.motion_penalty_stiffness(control_points)
     design = TABLE_ONE | {"control_points": control_points, "penalty_stiffness": slide} | settings
-    run = spline_model.solve_release(
+    run = spline_model.solve_motion(
         spline_model.cross_axis_pivot(**design),
+        start=math.pi / 2,
         duration=DURATION,
         step=step,
         integrator=integrator,

@@ -33,11 +33,7 @@ def test_a_batch_costs_a_fraction_of_single_solves():
     """Requirement: in a batch a path takes less than a third of a single solve, set-up included."""
     pivot = cross_axis_pivot(**SIX)
     single = best(lambda: solve_statics(pivot, rotation=QUARTER_TURN, increments=INCREMENTS))
-    batch = best(
-        lambda: solve_many(
-            designs(), rotation=QUARTER_TURN, increments=INCREMENTS, threads=1, control_points=6
-        )
-    )
+    batch = best(lambda: solve_many(*designs(), rotation=QUARTER_TURN, increments=INCREMENTS, threads=1))
     assert batch / DESIGNS < single / 3.0
 
 

@@ -136,8 +136,8 @@ def test_elements_are_what_scikit_fem_assembles(element: str) -> None:
 def test_what_resists_a_motion_is_the_gradient_with_loads_and_dampers(element: str) -> None:
     """The compiled resistance is the gradient of the potential, damping matrix times velocity, less loads."""
     model = four_bar(PARAMETERS, rise=0.003, elements=3, element=element)
-    structure, bodies = about_mass_centre(structure_of(model))
-    scheme, generator = Scheme(structure, bodies), np.random.default_rng(5)
+    scheme, generator = Scheme(model), np.random.default_rng(5)
+    structure = scheme.structure
     y, v = 0.002 * generator.standard_normal((2, structure.size))
     y[structure.turns] = [1.1, -0.7, 2.0]
 

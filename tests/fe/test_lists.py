@@ -51,13 +51,13 @@ def test_a_force_at_a_point(follower: bool) -> None:
     """A force at a point of a body acts as at the centre of a body that has it there, and does work."""
     point = (0.13, 0.04)
     off, there = pulled((0.1, 0.0), at=point, follower=follower), pulled(point, follower=follower)
-    path, same = fe.solve_mechanism(off), fe.solve_mechanism(there)
+    path, same = fe.solve_statics(off), fe.solve_statics(there)
     assert np.abs(path.shape - same.shape).max() < 1e-12 * np.ptp(path.shape)
-    assert np.abs(path.shape - fe.solve_mechanism(pulled((0.1, 0.0))).shape).max() > 1e-4
+    assert np.abs(path.shape - fe.solve_statics(pulled((0.1, 0.0))).shape).max() > 1e-4
     assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
     assert same.work[-1] == pytest.approx(path.work[-1], rel=1e-8)
     turns = [1.0 / np.linalg.inv(each.body_stiffness()[-1])[2, 2] for each in (path, same)]
-    driven = fe.solve_mechanism(off, rotation=float(path.rotation[-1]), increments=5)
+    driven = fe.solve_statics(off, rotation=float(path.rotation[-1]), increments=5)
     assert turns[0] == pytest.approx(turns[1], rel=1e-9)
     assert turns[0] == pytest.approx(driven.stiffness[-1], rel=1e-8)
     assert abs(driven.torque[-1]) < 1e-9 * abs(driven.torque).max()
@@ -122,9 +122,9 @@ def test_hinges_leave_motions_free() -> None:
         given = scene(fe.DEFAULT_EFFECTS, applied_force={"force": force})
         return fe.compliant_mechanism(strips=strips, bodies=[beam], elements=2, **given)
 
-    path = fe.solve_mechanism(linkage((0.0, 40.0)), increments=2)
+    path = fe.solve_statics(linkage((0.0, 40.0)), increments=2)
     assert path.prescribed == () and path.axial_force[-1] == pytest.approx(20.0, rel=1e-9)
-    refused(lambda: fe.solve_mechanism(linkage((1.0, 0.0))), "nothing holds body beam in the direction x")
+    refused(lambda: fe.solve_statics(linkage((1.0, 0.0))), "nothing holds body beam in the direction x")
     loose = partial(fe.StripDesign, name="loose", start=(0.0, 0.0), end=(0.1, 0.0), tip=None, **SECTION)
     refused(
         lambda: loose(tip_joint="hinge"), "tip_joint: got 'hinge', expected clamp at the free end of loose"

@@ -34,8 +34,7 @@ def test_natural_curvature_gives_a_stress_free_arc(element: str) -> None:
 
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         runs = [
-            fe.solve_mechanism(free_cantilever(parameters=given, elements=n, element=element))
-            for n in elements
+            fe.solve_statics(free_cantilever(parameters=given, elements=n, element=element)) for n in elements
         ]
         exact = radius * np.array([np.sin(angle), 1.0 - np.cos(angle)])
         return float(np.abs(extrapolated([run.shape[-1, 0, -1] for run in runs]) - exact).max() / GUIDE)
@@ -43,7 +42,7 @@ def test_natural_curvature_gives_a_stress_free_arc(element: str) -> None:
     hold("fe_natural_arc", error)
     roots: dict[str, Any] = {"root_compliance": {"root": 3.0}}  # which nothing turns without a moment
     answer, soft = (
-        fe.solve_mechanism(free_cantilever(parameters=given | more, element=element, section=WIDE))
+        fe.solve_statics(free_cantilever(parameters=given | more, element=element, section=WIDE))
         for more in ({}, roots)
     )
     assert np.abs(soft.shape[-1] - answer.shape[-1]).max() < 1e-12 * GUIDE
@@ -60,7 +59,7 @@ def test_static_balance(element: str) -> None:
     """Work of drives and loads is the change of strain and gravity energy along the whole path."""
 
     def error(increments: int = 60) -> float:
-        answer = fe.solve_mechanism(
+        answer = fe.solve_statics(
             all_static(element=element, elements=8), body="crank", rotation=0.6, increments=increments
         )
         stored = answer.strain_energy + answer.spring_energy + answer.gravity_energy
@@ -119,7 +118,7 @@ def test_shear_of_a_stubby_cantilever_is_timoshenkos() -> None:
     how: dict[str, Any] = {"length": LENGTH, "section": section, "parameters": load, "element": "reissner"}
 
     def error(elements: tuple[int, ...] = (4, 8, 16)) -> float:
-        paths = [fe.solve_mechanism(free_cantilever(**how, elements=n), increments=1) for n in elements]
+        paths = [fe.solve_statics(free_cantilever(**how, elements=n), increments=1) for n in elements]
         return abs(float(extrapolated([path.shape[-1, 0, -1, 1] for path in paths])) / exact - 1.0)
 
     hold("fe_timoshenko_tip", error)
@@ -132,11 +131,11 @@ def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
         tipped(TIP, elements=n, element=element, applied_moment={"moment": 2.4 * np.pi * EI / GUIDE})
         for n in (2, 4)
     )
-    answer = fe.solve_mechanism(coarse, increments=12, check=False, raise_on_failure=False)
+    answer = fe.solve_statics(coarse, increments=12, check=False, raise_on_failure=False)
     assert answer.status is fe.Status.NOT_CONVERGED
     assert "an element is folded" in answer.message
     assert 0.9 < answer.rotation[-1] / (2.0 * np.pi) <= 1.0
-    assert fe.solve_mechanism(fine, increments=12).rotation[-1] == pytest.approx(2.4 * np.pi)
+    assert fe.solve_statics(fine, increments=12).rotation[-1] == pytest.approx(2.4 * np.pi)
 
 
 EVERY: dict[str, dict[str, Any]] = {**SIDED, "root_compliance": {"root": "monolithic"}}
@@ -177,7 +176,7 @@ STRIPS_BUCKLE = 4.0 * np.pi**2 * 206e9 * 50e-3 * 3e-3**3 / 12.0 / 0.3**2 * 2.0 *
 def test_a_hanging_column_does_not_gain_whole_turns() -> None:
     """At twelve times Euler's load the body hangs in one place for any increments, turned by under pi."""
     hanging = heavy(fe, 30.0, elements=10)
-    places = [fe.solve_mechanism(hanging, increments=k).bodies["tip"][-1] for k in (3, 10)]
+    places = [fe.solve_statics(hanging, increments=k).bodies["tip"][-1] for k in (3, 10)]
     assert np.allclose(*places, rtol=1e-8, atol=1e-12)
     assert -np.pi < places[0][2] < -0.9 * np.pi
 
@@ -206,9 +205,29 @@ def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
     assert paths[0][1].load_factor == pytest.approx(paths[1][1].load_factor, rel=1e-9)
 
 
+@pytest.mark.parametrize("aside", [1e-10, 1e-9])
+def test_a_column_that_is_hardly_pushed_aside_bifurcates(aside: float) -> None:
+    """Requirement: a path that cannot follow an imperfection around the Euler load ends in a bifurcation."""
+    length, load = 0.1, 10.0
+    column = {"start": (0.0, 0.0), "end": (length, 0.0), "tip": "body", "width": 0.01, "thickness": 5e-4}
+    metal = {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 7850.0}
+    strip, push = fe.StripDesign(name="column", **column, **metal), {"force": (-load, aside * load)}
+    model = fe.compliant_mechanism(
+        strips=[strip],
+        bodies=[fe.BodyDesign(centre=(length, 0.0))],
+        effects=("bending", "stretching", "applied_force"),
+        parameters={"applied_force": push},
+    )
+    answer = fe.solve_statics(model, increments=10, raise_on_failure=False)
+    (point,) = answer.critical_points
+    euler = np.pi**2 * strip.flexural_rigidity / (4.0 * length**2)
+    assert (point.kind, point.inertia) == ("bifurcation", 1)
+    assert point.load_factor * load == pytest.approx(euler, rel=1e-3)
+
+
 def test_a_pressed_pivot_says_what_buckles() -> None:
     """A free pivot tips first and its strips buckle later."""
-    answer = fe.solve_mechanism(pressed(elements=8), increments=4, check=False)
+    answer = fe.solve_statics(pressed(elements=8), increments=4, check=False)
     tips, strips = answer.critical_points
     assert tips.inertia == 1
     assert strips.inertia == answer.inertia[-1] > 1
@@ -308,7 +327,7 @@ def test_an_accuracy_out_of_reach_is_told() -> None:
     with pytest.raises(fe.ConvergenceError, match="is not reached"):
         fe.solve_statics(pivot(elements=4), **asked)
     pressed = pivot(elements=2, **scene(fe.DEFAULT_EFFECTS, applied_force={"force": (0.0, -1e6)}))
-    stopped = fe.solve_mechanism(pressed, accuracy=1e-3, raise_on_failure=False)
+    stopped = fe.solve_statics(pressed, accuracy=1e-3, raise_on_failure=False)
     assert stopped.status.value == "not_converged" and stopped.estimate is None
 
 

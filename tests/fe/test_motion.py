@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import fe_reference as fe
-from fe_reference.drives import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
+from fe_reference.motion import drive_spans
 from fe_reference.structure import Structure, structure_of
 from tests.fe.scenes import (
     GUIDE,
@@ -31,7 +31,7 @@ QUARTER = np.pi / 2.0
 def test_run_is_described() -> None:
     """A trajectory carries its step, its limit and its work, and samples as asked, the start first."""
     calls: list[tuple[int, int]] = []
-    motion = fe.solve_release(
+    motion = fe.solve_motion(
         pivot(), start=0.5, duration=1e-4, samples=10, progress=lambda *call: calls.append(call)
     )
     assert len(motion.time) == 11 == len(calls) + 1
@@ -45,7 +45,7 @@ def test_run_is_described() -> None:
 def test_implicit_step_without_solution_ends_the_run() -> None:
     """A step that no halving makes solvable ends the run with the motion until then."""
     how: dict[str, Any] = {"integrator": "generalised-alpha", "raise_on_failure": False}
-    motion = fe.solve_release(pivot(), start=QUARTER, duration=10.0, step=1.0, **how)
+    motion = fe.solve_motion(pivot(), start=QUARTER, duration=10.0, step=1.0, **how)
     assert motion.status is not fe.Status.CONVERGED
     assert motion.message != ""
     assert len(motion.time) >= 1
@@ -54,11 +54,11 @@ def test_implicit_step_without_solution_ends_the_run() -> None:
 def test_an_implicit_step_that_is_too_long_is_told() -> None:
     """A step of 1 ms on a swing whose strips follow within it: halved where it gains energy, and told."""
     settings = {"start": 1.0, "duration": 0.02, "integrator": "generalised-alpha", "check": False}
-    motion = fe.solve_release(pivot(elements=10), **settings, step=1e-3)
+    motion = fe.solve_motion(pivot(elements=10), **settings, step=1e-3)
     assert motion.counters["halvings"] > 0
     assert motion.energy_error < 0.01
     assert "steps in a mean period" in motion.resolution
-    sound = fe.solve_release(pivot(elements=10), **settings, step=1e-4)
+    sound = fe.solve_motion(pivot(elements=10), **settings, step=1e-4)
     assert motion.rotation[-1] == pytest.approx(sound.rotation[-1], abs=0.05)
     assert sound.resolution == ""
     assert list(sound.columns())[:4] == ["time_s", "x_m", "y_m", "rotation_rad"]
@@ -67,11 +67,11 @@ def test_an_implicit_step_that_is_too_long_is_told() -> None:
 def test_explicit_is_stable_and_keeps_its_energy() -> None:
     """At 0.9 of the limit the energy after release from 90 degrees stays; at 1.1 it does not."""
 
-    brief = fe.solve_release(pivot(), start=QUARTER, duration=1e-5, check=False)
+    brief = fe.solve_motion(pivot(), start=QUARTER, duration=1e-5, check=False)
     limit = float(brief.settings["critical_step_s"])
 
     def error(safety: float = 0.9) -> float:
-        motion = fe.solve_release(
+        motion = fe.solve_motion(
             pivot(), start=QUARTER, duration=0.01, samples=200, step=safety * limit, raise_on_failure=False
         )
         return motion.energy_error if motion.status is fe.Status.CONVERGED else np.inf
@@ -80,7 +80,7 @@ def test_explicit_is_stable_and_keeps_its_energy() -> None:
     with pytest.raises(
         fe.ConvergenceError, match=r"the energy grew from .* use a smaller time step"
     ) as failure:
-        fe.solve_release(pivot(), start=QUARTER, duration=0.002, step=1.1 * limit)
+        fe.solve_motion(pivot(), start=QUARTER, duration=0.002, step=1.1 * limit)
     assert failure.value.solution.status is fe.Status.UNSTABLE
 
 
@@ -188,10 +188,10 @@ def test_a_catch_gives_momentum_to_what_is_led_alone(
     """Requirement: impulses act on led coordinates alone, though a body's mass is off the led point."""
     model = led_off_its_mass(way)
     (span, *_), own = drive_spans(model, drive, 1e-3), structure_of(model)
-    structure, bodies = about_mass_centre(own, span.led)
+    structure, _ = about_mass_centre(own, span.led)
     y, v = 1e-2 * np.random.default_rng(5).standard_normal((2, structure.size))
     y[structure.turns] = 1.1
-    change = span.caught(structure, bodies, y, v) - v
+    change = span.caught(structure, y, v) - v
     momentum = mass_matrix(structure, y, "lumped").sparse() @ change
     held = span.held(structure)
     assert np.abs(momentum[held]).min() > 1e-3 * np.abs(momentum).max()
@@ -259,7 +259,7 @@ def test_holding_the_rotation_interlaces_the_frequencies() -> None:
     held = fe.natural_frequencies(model, rotation=1.0, count=5, held=True)
     assert np.all(held.frequency >= free.frequency[:5])
     assert np.all(held.frequency <= free.frequency[1:])
-    assert np.all(held.body_shapes[:, 2] == 0.0)
+    assert np.all(held.bodies["body"][:, 2] == 0.0)
 
 
 def test_small_meshes_give_all_their_modes() -> None:

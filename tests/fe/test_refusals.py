@@ -79,7 +79,7 @@ def apart(ratio: float) -> fe.Model:
 
 def release(given: Any = None, **options: Any) -> object:
     """Release the pivot, given other effects as well."""
-    return fe.solve_release(pivot(**given or {}), **{"start": 0.5, "duration": 1e-4} | options)
+    return fe.solve_motion(pivot(**given or {}), **{"start": 0.5, "duration": 1e-4} | options)
 
 
 def unheld() -> fe.Model:
@@ -110,7 +110,7 @@ ASKED: list[tuple[Callable[[], object], str]] = [
         lambda: four_bar({"root_compliance": {"root": -1.0}}, section=WIDE),
         "root: got -1.0, expected a number",
     ),
-    (lambda: fe.solve_mechanism(four_bar(CLAMPED, section=VAST)), "clamped_width: got 500.0, expected a"),
+    (lambda: fe.solve_statics(four_bar(CLAMPED, section=VAST)), "clamped_width: got 500.0, expected a"),
     *(
         (partial(fe.plate_factors, *each), "ratio")
         for each in ((0.0, 0.3), (np.nan, 0.3), (0.5, -0.1), (0.5, 0.6))
@@ -123,9 +123,9 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: fe.BodyDesign(centre=np.array([np.nan, 0.0])), "centre: got nan, expected a finite number"),
     (lambda: tipped(TIP, strip={"density": 0.0}), "above 0"),
     (lambda: fe.Model(strips=()), "one or more strips"),
-    (lambda: fe.solve_mechanism(unheld()), "nothing holds body tip against turning"),
-    (lambda: fe.solve_mechanism(four_bar(), rotation=0.1), "body: got None, expected one of crank, cou"),
-    (lambda: fe.solve_mechanism(free_cantilever(), rotation=0.1), "body: got None, expected one of no"),
+    (lambda: fe.solve_statics(unheld()), "nothing holds body tip against turning"),
+    (lambda: fe.solve_statics(four_bar(), rotation=0.1), "body: got None, expected one of crank, cou"),
+    (lambda: fe.solve_statics(free_cantilever(), rotation=0.1), "body: got None, expected one of no"),
     (lambda: alone(driven_displacement=LED), "driven_displacement: got 'no bodies'"),
     (lambda: fe.solve_motion(pivot(), start=0.1, settled=False, **BRIEF), "settled: got False"),
     (lambda: fe.natural_frequencies(pivot(), rotation=None, held=True), "held: got True, expected a driven"),
@@ -133,7 +133,7 @@ ASKED: list[tuple[Callable[[], object], str]] = [
         lambda: fe.solve_motion(free_cantilever(root=None), settled=False, integrator=ALPHA, **BRIEF),
         "step: got None",
     ),
-    (lambda: fe.solve_mechanism(apart(1e14), body="b", rotation=0.1), "expected clamps that hold it, or"),
+    (lambda: fe.solve_statics(apart(1e14), body="b", rotation=0.1), "expected clamps that hold it, or"),
     (lambda: fe.natural_frequencies(pivot(**STILL)), INERTIA),
     (lambda: release(STILL), INERTIA),
     (lambda: release(LIGHT), "expected generalised-alpha where strips or bodies have no"),
@@ -175,7 +175,7 @@ LISTS: list[tuple[dict[str, Any], str]] = [
 ]
 ASKED += [(partial(four_bar, given), said) for given, said in LISTS]
 ASKED += [
-    (lambda: fe.solve_mechanism(ROLLED(), body="crank", rotation=0.1), f"'rotation of crank', {ONCE}"),
+    (lambda: fe.solve_statics(ROLLED(), body="crank", rotation=0.1), f"'rotation of crank', {ONCE}"),
     (lambda: fe.natural_frequencies(ROLLED(), body="crank", rotation=0.1), f"'rotation of crank', {ONCE}"),
     (
         lambda: fe.solve_motion(ROLLED(), drive=fe.DrivenRotation(body="crank", angle=0.1), **BRIEF),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import spline_model
-from spline_model import Status, cross_axis_pivot, solve_many, solve_mechanism, solve_release, solve_statics
+from spline_model import Status, cross_axis_pivot, solve_many, solve_motion, solve_statics
 from tests import gates
 from tests.frames import one_strip
 from tests.models import scene
@@ -114,9 +114,9 @@ def test_an_estimate_is_that_of_its_largest_part(part):
     """Requirement: turns, shear forces and stresses count in the estimate where they alone are far off."""
     loads, quantity, unit = ALONE[part]
     bar = one_strip(spline_model, loads, loads, section=BAR, control_points=4)
-    solution = solve_mechanism(bar, increments=4, accuracy=0.9)
+    solution = solve_statics(bar, increments=4, accuracy=0.9)
     assert solution.estimate.trials == (4,)
-    four, seven = (replace(solve_mechanism(bar.on(1, n), increments=4), balanced=True) for n in (4, 7))
+    four, seven = (replace(solve_statics(bar.on(1, n), increments=4), balanced=True) for n in (4, 7))
     error = np.abs(quantity(four) - quantity(seven)).max() / np.abs(unit(seven)).max()
     assert error > 1e-4
     assert solution.estimate.errors[part] == pytest.approx(error, rel=1e-6)
@@ -165,7 +165,7 @@ def loaded(**changes):
 def spread(count=40, rotation=60.0):
     """Designs over most of the space, their rotation in degrees."""
     generator = np.random.default_rng(3)
-    designs = TABLE_ONE | {
+    designs = {
         "crossing_ratio": generator.uniform(0.05, 0.95, count),
         "inclination": np.radians(generator.uniform(15.0, 75.0, count)),
     }
@@ -187,7 +187,10 @@ def test_every_design_of_a_batch_gets_the_points_that_it_takes():
     """Requirement: designs of a batch are within 1e-4 of answers with many more control points."""
     designs, rotation = spread()
     how = {"rotation": rotation, "increments": 6, "section_depth": 4e-3}
-    found, right = solve_many(designs, **how), solve_many(designs, **how, control_points=19)
+    found, right = (
+        solve_many(cross_axis_pivot(**TABLE_ONE, **points), designs, **how)
+        for points in ({}, {"control_points": 19})
+    )
     assert found.resolved.all()
     assert len(np.unique(found.control_points)) > 1
     for name in ("torque", "stiffness", "energy", "strain"):
@@ -201,7 +204,8 @@ def test_every_design_of_a_batch_gets_the_points_that_it_takes():
 def test_a_design_of_a_batch_that_misses_its_accuracy_is_told():
     """Requirement: where no number of control points reaches the accuracy, the row names it."""
     designs, rotation = spread(2, 90.0)
-    batch = solve_many(designs, rotation=rotation, increments=4, section_depth=4e-3, accuracy=1e-13)
+    how = {"increments": 4, "section_depth": 4e-3, "accuracy": 1e-13}
+    batch = solve_many(cross_axis_pivot(**TABLE_ONE), designs, rotation=rotation, **how)
     assert batch.converged.all()
     assert not batch.resolved.any()
     assert batch.resolution(1).startswith("estimated error above 1e-13 with ")
@@ -229,7 +233,8 @@ ASKED = ("accuracy", "records", "integrator", "step", "start")
 def swung(n=6, duration=DURATION, **settings):
     """The release of Table 1 from a quarter turn, or with other settings."""
     asked = {name: settings.pop(name) for name in ASKED if name in settings}
-    return solve_release(scenes.pivot(control_points=n, **settings), duration=duration, **asked)
+    asked = {"start": QUARTER, "duration": duration} | asked
+    return solve_motion(scenes.pivot(control_points=n, **settings), **asked)
 
 
 @cache

@@ -12,7 +12,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
 from tests.models import extrapolated, scene
-from tests.table_one import BARE, SIX, TABLE_ONE
+from tests.table_one import BARE, SIX
 
 VALUES = {
     "thickness": np.array([3e-4, 2e-4, 1.5e-2]),  # the last: thick, so that no axial force stays outside
@@ -67,7 +67,7 @@ def batch_error(thickness: float = 1.0) -> float:
     batch = spline_model.solve_many(given, values, body="crank", rotation=turns, increments=3)
     assert batch.converged.all()
     for i, turn in enumerate(turns):
-        path = spline_model.solve_mechanism(rebuilt(given, i), body="crank", rotation=turn, increments=3)
+        path = spline_model.solve_statics(rebuilt(given, i), body="crank", rotation=turn, increments=3)
         errors.append(np.abs(batch.torque[i] - path.torque).max() / np.abs(path.torque).max())
         errors.append(np.abs(batch.stiffness[i] / path.stiffness - 1.0).max())
     return float(max(errors))
@@ -85,7 +85,7 @@ def test_sensitivities_are_the_differences_of_a_batch(name, own):
     steps = 2e-3 / 2 ** np.arange(4)[:, None]
     batch = spline_model.solve_many(given, {name: own + np.concatenate((steps, -steps))[:, 0]}, **asked)
     found = spline_model.sensitivities(
-        given, spline_model.solve_mechanism(given, **asked), parameters=(name,), body="crank"
+        given, spline_model.solve_statics(given, **asked), parameters=(name,), body="crank"
     )
     for quantity in ("torque", "stiffness"):
         up, down = np.split(getattr(batch, quantity), 2)
@@ -122,26 +122,15 @@ def test_a_batch_by_several_numbers_has_the_pivots_of_all_of_them(name):
         gates.refuse("spline_batch_mechanism", partial(pivots_error, name))
 
 
-def many(count=40):
-    """Designs around Table 1, drawn once."""
-    generator = np.random.default_rng(11)
-    return [
-        TABLE_ONE
-        | {
-            "crossing_ratio": generator.uniform(0.2, 0.8),
-            "inclination": generator.uniform(0.6, 1.0),
-            "second_moment_of_area": 1.041e-10 * generator.uniform(0.3, 3.0),
-        }
-        for _ in range(count)
-    ]
-
-
 def test_a_batch_is_the_same_in_any_order():
     """Requirement: a batch gives the answers of single solves, for any threads and order of rows."""
-    designs = many()
-    asked = {"rotation": 1.2, "increments": 20, "control_points": 6}
-    one, two = (spline_model.solve_many(designs, threads=count, **asked) for count in (1, 2))
-    backwards = spline_model.solve_many(designs[::-1], threads=2, **asked)
+    generator, asked = np.random.default_rng(11), {"rotation": 1.2, "increments": 20}
+    spans = {"crossing_ratio": (0.2, 0.8), "inclination": (0.6, 1.0), "second_moment_of_area": (3e-11, 3e-10)}
+    designs = {name: generator.uniform(*span, 40) for name, span in spans.items()}
+    pivot = spline_model.cross_axis_pivot(**SIX)
+    one, two = (spline_model.solve_many(pivot, designs, threads=count, **asked) for count in (1, 2))
+    turned = {name: values[::-1] for name, values in designs.items()}
+    backwards = spline_model.solve_many(pivot, turned, threads=2, **asked)
     for name in ("torque", "stiffness", "centre", "energy"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
         assert np.array_equal(getattr(one, name), getattr(backwards, name)[::-1])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import spline_model
-from spline_model import cross_axis_pivot, solve_mechanism, solve_statics
+from spline_model import cross_axis_pivot, solve_statics
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.published.case import published
@@ -19,7 +19,7 @@ TWO_LIMITS = ("limit point", "limit point")
 
 def test_the_mode_of_a_column_is_a_quarter_wave():
     """Requirement: the critical mode moves the tip across and not along, and turns it as a sine does."""
-    answer = solve_mechanism(column(load=4.0, slenderness=1e4, control_points=6), increments=7)
+    answer = solve_statics(column(load=4.0, slenderness=1e4, control_points=6), increments=7)
     (point,) = answer.critical_points
     along, across, turn = point.mode[answer.system.layout.body("tip")]
     assert abs(along) < 1e-6
@@ -31,7 +31,7 @@ def test_load_control_and_arc_length_end_alike(branch):
     """Requirement: a branch without limit points ends in the same state in either control."""
     made = column(load=4.0, control_points=8)
     by_load, by_arc = (
-        solve_mechanism(made, control=control, branch=branch) for control in ("load", "arc-length")
+        solve_statics(made, control=control, branch=branch) for control in ("load", "arc-length")
     )
     assert np.abs(by_load.states[-1] - by_arc.states[-1]).max() < 1e-7
     assert [c.kind for c in by_load.critical_points] == [c.kind for c in by_arc.critical_points]
@@ -67,8 +67,8 @@ def test_both_paths_find_the_same_critical_points(pivot, rotation, increments, k
 def test_a_small_imperfection_bends_the_column_to_its_side(side, increments):
     """Requirement: beyond its Euler load a column with a billionth of the load aside is on the branch that
     the perfect one has there, to the side of the load, stable, and has no critical point."""
-    perfect = solve_mechanism(column(load=4.0, control_points=8), branch="follow")
-    found = solve_mechanism(column(load=4.0, control_points=8, side=side), increments=increments)
+    perfect = solve_statics(column(load=4.0, control_points=8), branch="follow")
+    found = solve_statics(column(load=4.0, control_points=8, side=side), increments=increments)
     assert found.critical_points == () and found.inertia[-1] == 0
     (_, across, turn), right = found.bodies["tip"][-1], perfect.bodies["tip"][-1]
     assert math.copysign(1.0, across) == math.copysign(1.0, side)
@@ -87,7 +87,7 @@ def test_printed_forces_have_no_inertia():
 def test_a_column_may_leave_its_upright_branch_as_its_weight_grows(control):
     """Requirement: branch = "follow" leads a centred heavy column onto its stable, bent branch."""
     made = heavy(spline_model, 3.0, 0.0, control_points=12)
-    answer = solve_mechanism(made, increments=1, branch="follow", control=control)
+    answer = solve_statics(made, increments=1, branch="follow", control=control)
     assert answer.inertia.max() == 0
     assert "goes on along the branch" in answer.message
     assert abs(tip(answer)) > 60  # deg
@@ -101,7 +101,7 @@ def lees_frame(control_points):
 
 def test_a_load_that_turns_round_keeps_its_sign():
     """Requirement: with default settings Lee's frame is followed through loads below zero, told with sign."""
-    path = solve_mechanism(lees_frame(control_points=None), control="arc-length")
+    path = solve_statics(lees_frame(control_points=None), control="arc-length")
     assert path.estimate.accuracy == 1e-4 and path.resolution == ""
     assert [point.kind for point in path.critical_points] == ["limit point", "limit point"]
     assert path.load_factor.min() < -0.3
@@ -110,7 +110,7 @@ def test_a_load_that_turns_round_keeps_its_sign():
 
 def work_balance(late=0):
     """Work of the load on Lee's frame, some states late, against the energy stored at the end of its path."""
-    path = solve_mechanism(lees_frame(control_points=10), control="arc-length")
+    path = solve_statics(lees_frame(control_points=10), control="arc-length")
     return abs(path.work[-1 - late] / path.energies[-1].sum() - 1)
 
 
@@ -175,7 +175,7 @@ def test_a_held_pivot_tips_where_its_own_stiffness_vanishes():
         assert f"force {5e1 * point.load_factor:.4g} kN" in answer.message
         factors.append(point.load_factor)
     assert max(factors) - min(factors) < 1e-4
-    free = solve_mechanism(made, increments=10, raise_on_failure=False)
+    free = solve_statics(made, increments=10, raise_on_failure=False)
     assert abs(free.critical_points[0].load_factor - factors[0]) < 1e-4
 
 
@@ -211,7 +211,7 @@ def test_loads_come_on_first_and_stay(name):
 def test_loads_first_by_both_methods_and_for_any_mechanism():
     """Requirement: the paper's bordered system and the mechanism of one body have the same path."""
     path, other = first("all", -25.0), first("all", -25.0, method="multipliers")
-    body = solve_mechanism(loaded(LOADS["all"]), rotation=math.radians(-25.0), increments=4)
+    body = solve_statics(loaded(LOADS["all"]), rotation=math.radians(-25.0), increments=4)
     for same in (other, body):
         assert np.allclose(same.torque, path.torque, rtol=0, atol=1e-9 * np.abs(path.torque).max())
         assert np.array_equal(same.load_factor, path.load_factor)
@@ -260,7 +260,7 @@ def weighed(control_points):
     """Moment defect of a cantilever that hangs far down under its own weight."""
     weight = {"gravity": {"acceleration": (0.0, -3e5)}}
     made = one_strip(spline_model, weight, weight, section=SECTION, control_points=control_points)
-    return solve_mechanism(made, increments=1).moment_defect[0]
+    return solve_statics(made, increments=1).moment_defect[0]
 
 
 def test_weight_is_in_the_balance_of_moments():

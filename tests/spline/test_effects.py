@@ -18,7 +18,7 @@ MOVING = ("gravity", "section_rotary_inertia", "strip_damping", "strip_drag", "b
 def static_balance(increments=160):
     """Imbalance of work and energies over 0 to 0.5 rad with every static effect, over the energy."""
     names = ("gravity", "applied_force", "applied_moment", "driven_displacement", "tip_force")
-    solution = spline.solve_mechanism(scene_with(*names), rotation=0.5, increments=increments)
+    solution = spline.solve_statics(scene_with(*names), rotation=0.5, increments=increments)
     energy = solution.bending_energy + solution.axial_energy + solution.gravity_energy
     return np.abs(energy - energy[0] - solution.work).max() / energy.max()
 

@@ -18,7 +18,7 @@ from tests.table_one import TABLE_ONE
 def time_error(form, step=1.25e-7):
     """Largest error of the rotation within 0.5 ms of the release, against the leapfrog."""
     chosen, options = pivot(control_points=4), {"start": QUARTER, "duration": 5e-4, "records": 20}
-    exact = spline_model.solve_release(chosen, integrator="leapfrog", step=2.5e-7, **options).rotation
+    exact = spline_model.solve_motion(chosen, integrator="leapfrog", step=2.5e-7, **options).rotation
     return np.abs(spline_model.solve_impulses(chosen, form=form, step=step, **options).rotation - exact).max()
 
 

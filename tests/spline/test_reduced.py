@@ -1,11 +1,13 @@
 """Strips as elements, in segments and held in a pose: the answers of the paper's bordered system."""
 
 import math
+import sys
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
+from numba.core.registry import CPUDispatcher
 
 import spline_model as spline
 from tests import gates
@@ -70,7 +72,7 @@ def rooted_pivot(form):
 def solved(build, form, method):
     """The path of a scene in four increments, by a method."""
     made, how = build(FORMS[form])
-    return spline.solve_mechanism(
+    return spline.solve_statics(
         made, increments=4, order="together", method=method, check=False, raise_on_failure=False, **how
     )
 
@@ -151,7 +153,7 @@ def test_a_strip_in_tension_is_resolved_by_default():
     section = {"area": 12e6, "second_moment_of_area": 1.0, "youngs_modulus": 1.0, "density": 1.0}
     pulled = {"applied_force": {"force": (pull, 0.0)}}
     strip = one_strip(spline, pulled, pulled, end=(1.0, 0.0), section=section)
-    path = spline.solve_mechanism(strip, rotation=turn, increments=4)
+    path = spline.solve_statics(strip, rotation=turn, increments=4)
     stored = pull * (1.0 - math.cos(turn)) + (pull * math.sin(turn)) ** 2 / (2.0 * 12e6)
     assert path.segments > 1
     assert path.torque[-1] == pytest.approx(math.sqrt(2.0 * stored), rel=1e-4)
@@ -185,7 +187,7 @@ def disagreement(pose, increments=8, slide=None, **settings):
         spline.DrivenDisplacement(body="body", displacement=tuple(displacement)),
     )
     led = replace(reference, scene=reference.scene.with_effects(*drives))
-    path = spline.solve_mechanism(led, increments=increments)
+    path = spline.solve_statics(led, increments=increments)
     system, z = path.system, path.states[-1]
     rows = system.layout.multipliers[-2:]
     torque = z[rows[0][0]]
@@ -267,3 +269,31 @@ def test_mechanisms_of_one_structure_have_their_own_numbers():
         size = np.abs(right.states).max(axis=0) + 1e-9
         assert np.abs((mine.states - right.states) / size).max() < 1e-8
         np.testing.assert_allclose(mine.torque, right.torque, rtol=1e-10, atol=1e-12)
+
+
+def kinds_of_arguments():
+    """How many kinds of arguments each kernel was compiled for, by its name."""
+    modules = [module for name, module in sys.modules.items() if name.startswith("spline_model.")]
+    found = [each for module in modules for each in vars(module).values() if isinstance(each, CPUDispatcher)]
+    return {each.py_func.__qualname__: len(each.signatures) for each in found}
+
+
+DAMPED = scene(spline.DEFAULT_EFFECTS, strip_damping={"relaxation_time": 1e-5})
+SHORT = {"start": 0.3, "duration": 1e-5, "step": 1e-6}
+
+
+@pytest.mark.parametrize(
+    "call, other",
+    [
+        (partial(spline.solve_motion, **SHORT), DAMPED),
+        (partial(spline.solve_motion, **SHORT, integrator="leapfrog"), {"control_points": 7}),
+        (partial(spline.solve_impulses, **SHORT), DAMPED),
+    ],
+    ids=["damped motion", "leapfrog", "damped impulses"],
+)
+def test_kernels_are_compiled_for_one_kind_of_arguments(call, other):
+    """Requirement: another effect, or other numbers, compile no kernel again."""
+    call(spline.cross_axis_pivot(**TABLE_ONE | {"control_points": 6}))
+    known = kinds_of_arguments()
+    call(spline.cross_axis_pivot(**TABLE_ONE | {"control_points": 6} | other))
+    assert kinds_of_arguments() == known

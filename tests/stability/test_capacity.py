@@ -82,7 +82,7 @@ def test_held_strips_bear_eulers_load(settings, inclination):
 
     gates.check("capacity", abs(found.force / expected - 1.0))
     gates.refuse("capacity", coarse)
-    assert found.uncertainty < 1e-4
+    assert found.relative_error < 1e-4
 
 
 @BY_MODEL

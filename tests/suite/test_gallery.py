@@ -236,7 +236,7 @@ def test_gradients_of_lengths_far_apart():
     """Requirement: a path of strips of which one is 500 times shorter has gradients, though its residual is
     round-off of the short strip: the torque at a given displacement is proportional to Young's modulus."""
     asked = put(read_design(FINDS / "mixed_lengths.toml"), SplineSettings(control_points=8))
-    path = spline_model.solve_mechanism(asked.modelled, rotation=0.0, increments=10, body="b3")
+    path = spline_model.solve_statics(asked.modelled, rotation=0.0, increments=10, body="b3")
     names = [f"s{i}.youngs_modulus" for i in range(3)]
     found = spline_model.sensitivities(asked.modelled, path, parameters=names, body="b3")
     assert 3.5e9 * found.torque.derivative[-1].sum() == pytest.approx(path.torque[-1], rel=1e-5)

@@ -191,11 +191,11 @@ def test_what_lets_go_of_a_displacement_is_drawn(words, tmp_path, command):
 def test_explicit_steps_that_lose_energy_are_told():
     """A light body from 170 deg: the default step is stable, but the energy is off, as a remark says."""
     at = {"start": math.radians(170.0), "duration": 0.01, "raise_on_failure": False, "check": False}
-    motion = fe_reference.solve_release(fe_reference.cross_axis_pivot(**TABLE_ONE | LIGHT, elements=10), **at)
+    motion = fe_reference.solve_motion(fe_reference.cross_axis_pivot(**TABLE_ONE | LIGHT, elements=10), **at)
     assert (motion.energy_error > 1e-3) == ("the energy drifts by" in motion.resolution)
     assert "the energy drifts by" in motion.resolution
     few = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=4)
-    small = fe_reference.solve_release(few, **(at | {"start": 0.5}))
+    small = fe_reference.solve_motion(few, **(at | {"start": 0.5}))
     assert small.energy_error < 1e-3 and small.resolution == ""
 
 
@@ -203,8 +203,8 @@ def test_explicit_steps_that_lose_energy_are_told():
 def test_a_motion_that_stops_is_tried_with_more_control_points(degrees):
     """Six control points fold at 178 deg; left open they are raised until the motion goes on."""
     at = {"start": math.radians(degrees), "duration": 0.01, "check": False}
-    left = spline_model.solve_release(spline_model.cross_axis_pivot(**TABLE_ONE), **at)
-    fixed = spline_model.solve_release(spline_model.cross_axis_pivot(**TABLE_ONE, control_points=6), **at)
+    left = spline_model.solve_motion(spline_model.cross_axis_pivot(**TABLE_ONE), **at)
+    fixed = spline_model.solve_motion(spline_model.cross_axis_pivot(**TABLE_ONE, control_points=6), **at)
     assert left.status.value == "converged"
     assert (left.control_points > 6) == (fixed.status.value != "converged")
 
@@ -213,11 +213,16 @@ def test_a_motion_that_stops_is_tried_with_more_control_points(degrees):
     ("given", "how", "said", "error"),
     [
         (LIGHT, {"start": math.radians(92.0), "duration": 0.02}, "the motion is not resolved", 0.2),
-        ({"control_points": 4}, {}, "rotations are uncertain by up to", 0.05 * math.pi / 2.0),
+        (
+            {"control_points": 4},
+            {"start": math.pi / 2.0},
+            "rotations are uncertain by up to",
+            0.05 * math.pi / 2.0,
+        ),
     ],
 )
 def test_coarse_motion_says_so_by_default(given, how, said, error):
     """A body of 0.4 times the mass of its strips from 92 deg, and four control points, are not resolved."""
-    motion = spline_model.solve_release(spline_model.cross_axis_pivot(**TABLE_ONE | given), **how)
+    motion = spline_model.solve_motion(spline_model.cross_axis_pivot(**TABLE_ONE | given), **how)
     assert said in motion.resolution
     assert motion.rotation_error > error

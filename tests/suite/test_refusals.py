@@ -10,11 +10,14 @@ from pathlib import Path
 import pytest
 
 from studies.__main__ import command_of
+from studies.answers.adapters import answer_static
+from studies.answers.settings import SplineSettings
 from studies.cases.document import parsed
 from studies.cases.keys import EFFECT_KEYS, OWN
-from studies.cases.problem import FOLDER, CaseError, named_case
+from studies.cases.problem import FOLDER, named_case
 from studies.cases.rules import Key, Rule
 from studies.commands.case import MECHANISM, PIVOT, SHOWN
+from studies.errors import BadInput
 from studies.record.source import ROOT
 from studies.registry import COMMANDS
 from studies.sweep.varied import known
@@ -194,17 +197,15 @@ def test_words_with_a_fault(words, tmp_path, refused, monkeypatch):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"crossing_ratio": 1.5}, "strip.crossing_ratio: got 1.5, expected a number between 0 and 1"),
-        ({"increments": 0}, "drive.increments: got 0, expected a whole number"),
-        ({"held": (0.5, 0.2)}, "drive.held_s: got [0.5, 0.2], expected two instants"),
-        ({"width": 0.02, "thickness": 0.005}, "strip.width_m: got 0.02 by 0.005, expected both sides"),
-        ({"thickness": None}, "strip.width_m: got 0.01000320153681966 by None, expected both sides of a"),
+        ({"crossing_ratio": 1.5}, "spline: crossing_ratio: got 1.5, expected a number between 0 and 1"),
+        ({"increments": 0}, "spline: increments: got 0, expected an integer >= 1"),
+        ({"thickness": None}, "spline: thickness: got None, expected width and thickness, both or neither"),
     ],
 )
 def test_design_made_in_code(change, said):
-    """A pivot that is made in code is held to the rules of a case file."""
-    with pytest.raises(CaseError, match=re.escape(said)):
-        replace(named_case(), **change)
+    """A pivot that is made in code is held to the rules of the model that is asked."""
+    with pytest.raises(BadInput, match=re.escape(said)):
+        answer_static(replace(named_case(), **change), SplineSettings(control_points=4))
 
 
 def test_bad_input_as_a_user_sees_it(tmp_path):

@@ -12,6 +12,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import strength
 from studies.cases.design import named_design, read_design
+from studies.cases.mechanism import Strip
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
 from tests import gates
@@ -168,8 +169,11 @@ def plate_error(**other):
     errors = []
     for width, nu, constant, linear in RITZ:
         plate = {"width": width, "poisson_ratio": other.get("poisson_ratio", nu)}
-        strip = validity.Strip(length=1.0, thickness=0.01, youngs_modulus=1e9, density=1e3, **plate)
-        pairs = zip(strip.clamped, (constant - 1.0, linear - 1.0), strict=True)
+        strip = Strip(
+            name="", start=(0.0, 0.0), end=(1.0, 0.0), tip=None, thickness=0.01,
+            youngs_modulus=1e9, density=1e3, **plate,
+        )  # fmt: skip
+        pairs = zip(validity.Bent(strip).clamped, (constant - 1.0, linear - 1.0), strict=True)
         errors += [abs(found / known - 1.0) for found, known in pairs]
     return max(errors)
 
