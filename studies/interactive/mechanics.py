@@ -203,8 +203,8 @@ class Mechanics:
         follow; energies are counted from there."""
         z, v = self._held.full_state(self._system), self._rates(velocity)
         self._motion = Motion(self._acting, z, v)
-        now = self._motion.state()
-        self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(self._body)])
+        z, _, strain, kinetic = self._motion.state()
+        self.begun = strain + kinetic + self._potential(z[self._system.layout.body(self._body)])
         self.snapshot = self._dynamic(self._motion)
 
     @property
@@ -255,12 +255,12 @@ class Mechanics:
         )
 
     def _dynamic(self, moving: Motion) -> Snapshot:
-        now = moving.state()
-        known = self._shown(strip_fields(self._acting, now.z[None], "release"), now.strain, now.kinetic)
+        z, v, *energies = moving.state()
+        known = self._shown(strip_fields(self._acting, z[None], "release"), *energies)
         known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
-        velocity = now.v[self._system.layout.body(self._body)].copy()
+        velocity = v[self._system.layout.body(self._body)].copy()
         centre = Snapshot.pole(known["pose"], velocity, LEAST_TURN / self.step)
-        return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
+        return Snapshot(**known, velocity=velocity, centre=centre, iterations=moving.iterations)
 
     def _shown(self, along: StripFields, strain: float, kinetic: float = 0.0) -> dict[str, Any]:
         """Return what follows from the poses of the bodies, what is along the strips, and the energies."""

@@ -3,7 +3,7 @@ step after step, the sequential impulses of section 4.1 at once, in their form t
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -24,24 +24,17 @@ MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
 FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 
 
-class _Moving(NamedTuple):
-    """Unknowns (N,) and velocities (Q,) of the released scene, its energies [J], and the solutions for
-    impulses of the last frame."""
-
-    z: Array
-    v: Array
-    kinetic: float
-    strain: float
-    iterations: int
-
-
 class Motion:
-    """The motion of a released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI] on."""
+    """The motion of a released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI] on.
+
+    Attributes:
+        iterations: the solutions for impulses of the last frame.
+    """
 
     def __init__(self, design: Mechanism, z: Array, v: Array) -> None:
         system = compile_scene(design.released())
         start = Start(set_in_motion(system), Later(z[None, : system.layout.size].copy), v)
-        self._stepper, self._iterations = sequential_impulse.Stepper(start), 0
+        self._stepper, self.iterations = sequential_impulse.Stepper(start), 0
 
     def advance(self, steps: int, step: float) -> float:
         """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
@@ -51,13 +44,13 @@ class Motion:
         if stepper.take(0.0, step, 0, steps, steps + 1, np.zeros((0, stepper.width))) < steps:
             stepper.take_back(kept)
             return 0.0
-        self._iterations = stepper.counted(0)["sweeps"] - before
+        self.iterations = stepper.counted(0)["sweeps"] - before
         return steps * step
 
-    def state(self) -> _Moving:
-        """Return the present state."""
+    def state(self) -> tuple[Array, Array, float, float]:
+        """Return the present unknowns (N,) and velocities (Q,), and strain and kinetic energy [J]."""
         (z,), (v,), (row,) = self._stepper.look()
-        return _Moving(z, v, float(row[KINETIC]), float(row[STRAIN]), self._iterations)
+        return z, v, float(row[STRAIN]), float(row[KINETIC])
 
 
 @dataclass(frozen=True, eq=False)

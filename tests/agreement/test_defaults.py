@@ -241,7 +241,7 @@ JUDGED = {
     "lists": (apart, (1, 3, 4, 13), 4),
     "many lists": (apart, range(60), 43),
     "many modes": (modes_apart, range(0, 60, 2), 21),
-    "releases": (apart_in_motion, (1, 3), 2),
+    "releases": (apart_in_motion, (2, 5, 11), 3),
     "many releases": (apart_in_motion, range(30), 22),
 }
 

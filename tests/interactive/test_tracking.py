@@ -24,18 +24,14 @@ from studies.interactive.tracking.tracker import Tracker
 from tests import gates
 from tests.interactive import films
 from tests.interactive.events import session, turned
-from tests.interactive.films import detected_corners, error, errors, film, names, rms, truth, watch
 from tests.interactive.painter import SKIN, WHITEST, Marker, Optics
-
-HARD = Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0)
-
 
 LENS = Optics(k1=-0.25, gamma=1.0)
 #: Films whose every frame is found, and the camera where it is known.
 FILMS = {
     "calibrated": (films.film(), Optics().camera),
     "uncalibrated": (films.film(), None),
-    "hard": (films.film(HARD, frames=40), None),
+    "hard": (films.film(Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0), frames=40), None),
     "lens": (films.film(LENS, frames=4, samples=3), LENS.camera),
     "far": (films.film(Optics(distance=0.9), frames=8), None),
     "wide": (films.film(Optics(width=1280, height=720, focal=1000.0), frames=8), None),
@@ -181,7 +177,7 @@ CAUSES = {name for name, _ in MODELS} - {""}
 #: Films with systematic errors, and what the page says of them.
 SYSTEMATIC = {
     "k1 -0.05": ("lens", films.film(Optics(k1=-0.05), samples=3)),
-    "k1 -0.12": ("lens", films.film(Optics(k1=-0.12), samples=3)),
+    "k1 -0.12": ("lens", films.film(Optics(k1=-0.12), frames=20, samples=3)),
     "2 mm high": ("not-flat", films.film(markers=odd(height=0.002), samples=3)),
     "curled to 300 mm": ("not-flat", films.film(markers=odd(curl=1 / 0.3), samples=3)),
     "curled to 150 mm": ("curled", films.film(markers=odd(curl=1 / 0.15), samples=3)),
@@ -251,11 +247,11 @@ def test_film_that_is_repeated_tells_nothing_new(monkeypatch):
 def test_foreign_square_is_not_followed():
     """Requirement: a marker that is exchanged under a finger is not followed for more than a second."""
 
-    def markers(k):
-        return [films.both(0)[0], replace(films.both(0)[1], number=1 if k < 3 else 9)]
-
+    first, second = films.both(0)
     made = films.film(
-        frames=32, markers=markers, fingers=lambda k: films.over(0, CORNER, 0.012) if k >= 3 else ()
+        frames=32,
+        markers=lambda k: [first, replace(second, number=1 if k < 3 else 9)],
+        fingers=lambda k: films.over(0, CORNER, 0.012) if k >= 3 else (),
     )
     assert films.names(films.watch(made)[-1]) == "lost-1"
 
@@ -263,9 +259,7 @@ def test_foreign_square_is_not_followed():
 def test_marker_out_of_plane_is_not_shown_as_right():
     """Requirement: a moving marker 10 mm above the plane is refused or doubted, never given without a
     word."""
-    first, second = films.both(5)
-    high = Marker(number=1, pose=second.pose, height=0.010)
-    for event in films.watch(films.film(frames=3, markers=lambda k: [first, high])):
+    for event in films.watch(films.film(frames=3, markers=odd(height=0.010))):
         assert films.names(event) != "found"
 
 
@@ -315,20 +309,20 @@ def test_the_demo_film_has_no_false_warning():
 )
 def test_camera_that_encodes_or_clips_light(optics):
     """Requirement: whatever power a camera encodes light with, and over-exposed, the shift is as good."""
-    events = watch(film(optics, frames=12))
-    _, shifts, found = errors(events)
+    events = films.watch(films.film(optics, frames=12))
+    _, shifts, found = films.errors(events)
     assert found == 12
-    gates.check("tracking_encoded_shift", rms(shifts))
-    assert all(("over-exposed" in names(event)) == (optics.exposure > 1.0) for event in events)
+    gates.check("tracking_encoded_shift", films.rms(shifts))
+    assert all(("over-exposed" in films.names(event)) == (optics.exposure > 1.0) for event in events)
 
 
 def test_encoded_gate_has_teeth(monkeypatch):
     """Requirement: without the common offset of the edges an over-exposed film fails."""
     assert gates.teeth("tracking_encoded_shift") == {"offset": False}
     monkeypatch.setattr(tracking.Shrinkage, "taken_out", lambda self, picture, corners, cells: corners)
-    _, shifts, _ = errors(watch(film(Optics(exposure=3.0), frames=6)))
+    _, shifts, _ = films.errors(films.watch(films.film(Optics(exposure=3.0), frames=6)))
     with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("tracking_encoded_shift", rms(shifts))
+        gates.check("tracking_encoded_shift", films.rms(shifts))
 
 
 #: Cameras that encode light by the powers 1/1.8 and 1/2.4, blur it, and expose it too little or too much.
@@ -345,24 +339,24 @@ def test_unloaded_pivot_before_any_camera():
     that are shown are farther than three stated spreads from the truth in at most 1 % of the frames."""
     path, angles, shifts, gaps = session(), [], [], []
     for optics in CAMERAS:
-        made, follower, shown = film(optics, frames=16, samples=3), Tracker(), Session()
+        made, follower, shown = films.film(optics, frames=16, samples=3), Tracker(), Session()
         turns, places = [], []
         for k, picture in enumerate(made):
             event = follower.see(picture, k / 25)
             state = shown.feed({**event, "t": k / 25})
-            turn, place = error(event, k)
+            turn, place = films.error(event, k)
             turns.append(turn)
             places.append(place)
-            true = turned(path, math.degrees(truth(k)[2]))
+            true = turned(path, math.degrees(films.truth(k)[2]))
             pose, force = (np.subtract(state[name], true[name]) for name in ("pose", "force"))
             gap = [*pose, *force, state["stiffness"] - true["stiffness"]]
             gaps.append(np.array(gap) / [*state["sd"], *state["force_sd"]])
-        angles.append(rms(turns))
-        shifts.append(rms(places))
-    with detected_corners():
-        coarse = errors(watch(film(CAMERAS[-1], frames=6, samples=3)))
-    gates.hold("camera_angle", lambda refined=True: max(angles) if refined else rms(coarse[0]))
-    gates.hold("camera_shift", lambda refined=True: max(shifts) if refined else rms(coarse[1]))
+        angles.append(films.rms(turns))
+        shifts.append(films.rms(places))
+    with films.detected_corners():
+        coarse = films.errors(films.watch(films.film(CAMERAS[-1], frames=6, samples=3)))
+    gates.hold("camera_angle", lambda refined=True: max(angles) if refined else films.rms(coarse[0]))
+    gates.hold("camera_shift", lambda refined=True: max(shifts) if refined else films.rms(coarse[1]))
     assert (np.mean(np.abs(gaps) > 3.0, axis=0) <= 0.01).all()
 
 
@@ -379,7 +373,7 @@ def sheet_film(folder, shown):
     writer = cv2.VideoWriter(path, kind, 25.0, (640, 480), False)
     for tilt, roll in shown:
         optics = Optics(tilt=math.radians(tilt), roll=math.radians(roll), k1=-0.1)
-        writer.write(film(optics, frames=1, markers=lambda k: flat, samples=2).picture(0))
+        writer.write(films.film(optics, frames=1, markers=lambda k: flat, samples=2).picture(0))
     writer.release()
     return path
 

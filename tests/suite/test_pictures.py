@@ -132,13 +132,19 @@ def test_what_does_not_go_over_one_another_is_refused():
         picture([start])
 
 
-@pytest.mark.parametrize(("kind", "begin"), [("svg", b"<?xml"), ("pdf", b"%PDF"), ("png", b"\x89PNG")])
-def test_command_writes_a_picture_beside_its_answer(kind, begin, tmp_path, capsys):
+#: Endings of pictures and how their files begin; each kind takes half a second.
+BEGINS = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}
+
+
+@pytest.mark.parametrize(
+    "kind", ["svg", *(pytest.param(each, marks=pytest.mark.slow) for each in ("pdf", "png"))]
+)
+def test_command_writes_a_picture_beside_its_answer(kind, tmp_path, capsys):
     """--plot writes a file of its ending and prints its name on the stream without JSON."""
     path = tmp_path / f"drawn.{kind}"
     words = ["solve", PIVOT, "--model", "fe", "--elements", "4", "--increments", "2"]
     assert main([*words, "--plot", str(path), "--json", "-"]) == 0
-    assert path.read_bytes().startswith(begin)
+    assert path.read_bytes().startswith(BEGINS[kind])
     said = capsys.readouterr()
     assert json.loads(said.out)["status"] == "converged"
     assert f"{path}: the picture" in said.err
