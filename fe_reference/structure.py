@@ -133,6 +133,7 @@ class Structure:
         #: pairs of rows with a matrix between them: of elements, links, and of bodies with the ground
         fixed = np.full(len(self.centres), points.ground)
         self.pairs = np.vstack([self.basis.mesh.t.T, self.links[1], np.stack([self.centres, fixed], axis=1)])
+        #: which of the carried rows they are
         self.ends = self.places[self.pairs]
 
     @cached_property
