@@ -20,7 +20,6 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_finish() -> None:
     """Keep what was imported and collected out of every later collection of garbage."""
     gc.enable()
-    gc.collect()
     gc.freeze()
 
 

@@ -152,7 +152,6 @@ def test_roots_are_springs_at_both_clamps(name, models, grid):
 EFFECTS = ("clamped_width", "anticlastic", "root_compliance")
 #: Width and thickness [m]: Table 1's, and a wide thin strip that flattens as it bends.
 SECTIONS = {"table 1": (0.01, 0.005), "wide": (0.04, 0.0005)}
-INCREMENTS = 18
 #: Gates without and with roots, which are a smooth profile in the splines and springs in the elements.
 TORQUE = ("section_effects_torque", "section_effects_torque_with_roots")
 
@@ -171,7 +170,7 @@ def scene(section, effects):
 
 def difference(section, effects, *, control_points=14):
     """Largest difference of torques to a quarter turn, over the largest, of the elements in the limit."""
-    given, path = scene(section, effects), {"rotation": np.pi / 2, "increments": INCREMENTS}
+    given, path = scene(section, effects), {"rotation": np.pi / 2, "increments": 18}
 
     def torque(models=fe_reference, **grid):
         return models.solve_statics(models.cross_axis_pivot(**BARE, **given, **grid), **path).torque

@@ -87,9 +87,8 @@ def test_curve_of_every_design_is_sent(server):
         curve = answer(socket, "curve")
         told(socket, do="drive", by="rotation")
         at, moment = curve["yields"]
-        states = []
-        for angle in (curve["rotation"][6], 0.99 * at, 1.01 * at):
-            states.append(told(socket, do="pose", pose=[0, 0, angle]))
+        turns = curve["rotation"][6], 0.99 * at, 1.01 * at
+        states = [told(socket, do="pose", pose=[0, 0, angle]) for angle in turns]
         assert states[0]["force"][2] == pytest.approx(curve["moment"][6], rel=1e-9)
         assert states[1]["force"][2] < moment < states[2]["force"][2]
         assert states[1]["stress"]["of_yield"] < 1.0 < states[2]["stress"]["of_yield"]

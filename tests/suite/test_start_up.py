@@ -77,11 +77,9 @@ def code_without_a_reader(*words: str, errors: int | None = subprocess.PIPE) -> 
     """Return exit code and error stream of `python -m studies` whose output nobody reads."""
     read, write = os.pipe()
     os.close(read)
-    try:
-        command, streams = [sys.executable, "-m", "studies", *words], {"stdout": write, "stderr": errors}
-        done = subprocess.run(command, cwd=ROOT, **streams, text=True, check=False)
-    finally:
-        os.close(write)
+    command = [sys.executable, "-m", "studies", *words]
+    with os.fdopen(write, "w") as output:
+        done = subprocess.run(command, cwd=ROOT, stdout=output, stderr=errors, text=True, check=False)
     return done.returncode, done.stderr or ""
 
 
