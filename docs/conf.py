@@ -53,7 +53,7 @@ nitpick_ignore = [
         "SuperLU",
         # type variables
         *("spline_model.accuracy.Found", "spline_model.motion.arrays.Kind", "spline_model.scene.Kind"),
-        *("fe_reference.effects.T", "fe_reference.refined.Answer"),
+        *("fe_reference.model.T", "fe_reference.refined.Answer"),
         *("fe_reference.arrays.F", "spline_model.solution.T"),
         *("studies.record.progress.Item", "studies.record.progress.Result"),
     )

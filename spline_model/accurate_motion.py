@@ -396,7 +396,7 @@ class _Runs:
             return COARSEST
         task = self.task
         angle = abs(task.start or 0.0) * task.frequency * task.duration  # the phase error is a part of it
-        return self.spacing * task.frequency * math.sqrt(angle / (6 * SHARE * accuracy))
+        return max(float(FINE), self.spacing * task.frequency * math.sqrt(angle / (6 * SHARE * accuracy)))
 
     def solved(self, n: int, fineness: float) -> tuple[Trajectory, Array, float]:
         """The fine run, and what coarser ones say that it lacks.
