@@ -50,6 +50,40 @@ class Status(StrEnum):
         }[self]
 
 
+@dataclass(frozen=True, kw_only=True)
+class ErrorEstimate:
+    """Estimated errors of an answer that meshes were refined for.
+
+    Attributes:
+        accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
+        stopped: elements of a finer mesh that round-off stopped early; 0 for none.
+        errors: by quantity, the largest over the states in parts of its largest value [1].
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, accuracy=1e-3)
+    >>> bool(path.estimate.largest <= 1e-3)
+    True
+    """
+
+    accuracy: float
+    meshes: tuple[int, ...]
+    errors: Mapping[str, float]
+    stopped: int = 0
+
+    @property
+    def elements(self) -> int:
+        """Elements of a strip on the finest mesh."""
+        return self.meshes[-1]
+
+    @property
+    def largest(self) -> float:
+        """The largest of the estimated relative errors [1]."""
+        return max(self.errors.values())
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
     """Common part of solutions and trajectories.
@@ -77,7 +111,7 @@ class Answer:
     counters: Mapping[str, int]
     history: Norms
     seconds: Mapping[str, float]
-    estimate: "ErrorEstimate | None" = None
+    estimate: ErrorEstimate | None = None
 
     def __post_init__(self) -> None:
         """Make all arrays read only."""
@@ -244,40 +278,6 @@ class StaticSolution(Answer):
 
 
 ENERGIES = ("bending_energy", "axial_energy", "shear_energy", "spring_energy", "gravity_energy", "work")
-
-
-@dataclass(frozen=True, kw_only=True)
-class ErrorEstimate:
-    """Estimated errors of an answer that meshes were refined for.
-
-    Attributes:
-        accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
-        stopped: elements of a finer mesh that round-off stopped early; 0 for none.
-        errors: by quantity, the largest over the states in parts of its largest value [1].
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
-
-    >>> path = solve_statics(pivot, rotation=0.1, accuracy=1e-3)
-    >>> bool(path.estimate.largest <= 1e-3)
-    True
-    """
-
-    accuracy: float
-    meshes: tuple[int, ...]
-    errors: Mapping[str, float]
-    stopped: int = 0
-
-    @property
-    def elements(self) -> int:
-        """Elements of a strip on the finest mesh."""
-        return self.meshes[-1]
-
-    @property
-    def largest(self) -> float:
-        """The largest of the estimated relative errors [1]."""
-        return max(self.errors.values())
 
 
 def _only(bodies: Mapping[str, Array]) -> Array:
