@@ -1,7 +1,7 @@
 """Put a design to either model, and get a neutral answer: its static path, its release, its natural modes."""
 
 from dataclasses import fields, replace
-from functools import partial
+from time import perf_counter
 from typing import Any
 
 from studies.answers.answer import Answer
@@ -14,7 +14,6 @@ from studies.cases.effects import Effects
 from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.errors import BadInput
 from studies.kinds import Progress
-from studies.record.progress import measure
 
 
 def answer_static(
@@ -44,12 +43,10 @@ def answer_static(
     if isinstance(settings, FeSettings):
         wanted["progress"] = progress
 
-    def answer() -> Response:
-        asked = put(design, settings)
-        return Response.of(asked, asked.static_path(raise_on_failure=False, **wanted))
-
-    timing = measure(answer, repeat=1, warm_up=0)
-    return replace(timing.result, wall_s=timing.median)
+    begin = perf_counter()
+    asked = put(design, settings)
+    found = Response.of(asked, asked.static_path(raise_on_failure=False, **wanted))
+    return replace(found, wall_s=perf_counter() - begin)
 
 
 def answer_release(
@@ -94,22 +91,19 @@ def answer_release(
             raise BadInput(f"accuracy: got {how['accuracy']!r}, expected {expected}")
         how = {"samples" if name == "records" else name: value for name, value in how.items()}
         how["raise_on_failure"] = False
-
-    def solve() -> tuple[Asked, dict[str, Any], Any]:
-        asked = put(design, settings, moving=True)
+    begin = perf_counter()
+    asked = put(design, settings, moving=True)
+    try:
         with asked.refusals():
             at = {"start": start, "body": design.body} | _drive_of(asked)
-            return asked, at, model.solve_motion(asked.modelled, check=False, **at, **how)
-
-    try:
-        timing = measure(solve, repeat=1, warm_up=0)
+            result = model.solve_motion(asked.modelled, check=False, **at, **how)
     except model.ConvergenceError as error:
         message = f"statics does not reach the start: {error}"
-        return Motion(asked=put(design, settings, moving=True), status="not_converged", message=message)
-    asked, at, result = timing.result
+        return Motion(asked=asked, status="not_converged", message=message)
+    wall = perf_counter() - begin
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
-    answer = Motion.of(asked, result, wall_s=timing.median)
+    answer = Motion.of(asked, result, wall_s=wall)
     return _weighed(answer, settings, start) if answer.starts_still and answer.converged else answer
 
 
@@ -144,14 +138,14 @@ def answer_modes(
     still = rotation is None and (held or design.crossing_point is not None)
     how: dict[str, Any] = {"count": count, "held": held, "rotation": 0.0 if still else rotation}
     how |= {} if accuracy is None else {"accuracy": accuracy}
-    solve = partial(asked.model.natural_frequencies, asked.modelled, body=design.body, **how)
     state: dict[str, Any] = {"turned": rotation or 0.0, "held": held, "count": count}
+    begin = perf_counter()
     try:
         with asked.refusals():
-            timing = measure(solve, repeat=1, warm_up=0)
+            found = asked.model.natural_frequencies(asked.modelled, body=design.body, **how)
     except asked.model.ConvergenceError as error:
         return Spectrum.of(asked, None, message=f"statics does not reach the state: {error}", **state)
-    return Spectrum.of(asked, timing.result, wall_s=timing.median, **state)
+    return Spectrum.of(asked, found, wall_s=perf_counter() - begin, **state)
 
 
 def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
